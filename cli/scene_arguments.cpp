@@ -212,7 +212,9 @@ void SceneArguments::add_samples_to(CLI::App& command) {
   command
       .add_option("--compress", compress,
                   "compresses the textures on load, to see what that saves of bandwidth and costs in the "
-                  "picture: bc1: 8 bytes for 4x4 texels, alpha 0 or 1; bc3: 16 bytes")
+                  "picture: bc1: 8 bytes for 4x4 texels, alpha 0 or 1; bc3: 16 bytes; astc: 16 bytes for 4x4 "
+                  "texels, and astc5x4 to "
+                  "astc12x12 for as many")
       ->check(one_of(scenes::kCompressionNames));
   command.add_flag("--supersample", supersample,
                    "shades each sample for itself, where it lies, instead of each pixel once");

@@ -17,6 +17,7 @@ find_package(muparser REQUIRED)  # their formulas
 find_package(OpenTURNS REQUIRED)  # their designs
 find_package(pagmo REQUIRED)  # their searches
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+find_package(astcenc REQUIRED)  # ASTC: textures compressed on load, and a second decoder
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)

@@ -33,7 +33,7 @@ TextureUnit::TextureUnit(sc_core::sc_module_name name, const UnitContext& contex
     return static_cast<double>(stats_.bilinear_quads.value()) / params_.filter_quads_per_clk;
   });
   add_rate("decode", [this] {
-    return static_cast<double>(stats_.blocks_decoded.value()) / params_.decode_blocks_per_clk;
+    return static_cast<double>(stats_.decode_slots.value()) / params_.decode_blocks_per_clk;
   });
   add_places("groups_in_flight",
              [this] { return groups_.size() >= static_cast<std::size_t>(params_.groups_in_flight.value()); });
@@ -122,20 +122,25 @@ void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group,
 void TextureUnit::add_look_ups(Group& group) {
   if (plan_.block_count == 0 || params_.blocks_held.value() == BlocksHeld::kCompressed) {
     for (int i = 0; i < plan_.line_count; ++i)
-      lines_.push_back({plan_.lines[static_cast<std::size_t>(i)], {}});
-    decode(group, static_cast<std::uint32_t>(plan_.block_count));
+      lines_.push_back({plan_.lines[static_cast<std::size_t>(i)], {}, plan_.format});
+    decode(group, static_cast<std::uint32_t>(plan_.block_count), plan_.format);
     return;
   }
   decoded_lines_.clear();
   models::add_decoded_lines(plan_, decoded_lines_);
-  for (const models::DecodedLine& line : decoded_lines_) lines_.push_back({{}, line});
+  for (const models::DecodedLine& line : decoded_lines_) lines_.push_back({{}, line, plan_.format});
 }
 
-void TextureUnit::decode(Group& group, std::uint32_t blocks) {
+void TextureUnit::decode(Group& group, std::uint32_t blocks, models::Format format) {
   if (blocks == 0) return;
-  group.blocks += blocks;
+  const std::uint32_t slots = models::is_astc_format(format)
+                                  ? blocks * static_cast<std::uint32_t>(params_.astc_decode_slots)
+                                  : blocks;
+  group.decode_slots += slots;
   stats_.blocks_decoded += blocks;
-  group.filter_cycles = std::max(group.filter_cycles, cycles_of(group.blocks, params_.decode_blocks_per_clk));
+  stats_.decode_slots += slots;
+  group.filter_cycles =
+      std::max(group.filter_cycles, cycles_of(group.decode_slots, params_.decode_blocks_per_clk));
 }
 
 L1Cache::Result TextureUnit::access(const LookUp& line) {
@@ -147,7 +152,7 @@ L1Cache::Result TextureUnit::access(const LookUp& line) {
                                         static_cast<std::uint8_t>(line.decoded.from.sectors)};
   const L1Cache::Result result =
       cache_.access_made(L1Cache::kMadeLines | line.decoded.line, from, groups_.newest(), port_);
-  if (cache_.stats().misses.value() != misses) decode(groups_.back(), line.decoded.blocks);
+  if (cache_.stats().misses.value() != misses) decode(groups_.back(), line.decoded.blocks, line.format);
   return result;
 }
 
@@ -210,7 +215,7 @@ void TextureUnit::details(Details& details) const {
   details.by_draw(DrawCount::kTextureMisses, cache_.stats().misses);
   details.by_tile(TileCount::kTextureMisses, cache_.stats().misses);
   details.work({&stats_.bilinear_quads}, params_.filter_quads_per_clk);
-  details.work({&stats_.blocks_decoded}, params_.decode_blocks_per_clk);
+  details.work({&stats_.decode_slots}, params_.decode_blocks_per_clk);
   port_.details(details, DrawCount::kTextureBytes);
 }
 

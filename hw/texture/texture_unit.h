@@ -5,7 +5,8 @@
 /// Out   response_out  their texels are filtered, in order
 /// Mem   misses of the first-level cache, 128-byte lines in 32-byte sectors
 /// Time  addresses: `address_quads_per_clk` quads and level a cycle, `tags_per_clk` distinct lines a cycle;
-///       decoder: `decode_blocks_per_clk` blocks of compressed textures a cycle, beside the filter;
+///       decoder: `decode_blocks_per_clk` blocks of compressed textures a cycle, beside the filter; one of
+///       ASTC takes the place of `astc_decode_slots`;
 ///       filter: `filter_quads_per_clk` bilinear quads a cycle. Requests wait in between for their lines, so
 ///       a miss delays but does not stop the look-ups behind it. [P: Igehy 1998, prefetching texture cache]
 #pragma once
@@ -68,7 +69,7 @@ class TextureUnit final : public Unit {
         {"compressed", "decoded"},
         "What the first-level cache holds of compressed textures: blocks, decoded for every request that "
         "reads "
-        "them, or decoded texels, which take two to eight times the room. [G: room]"};
+        "them, or decoded texels, which take two to 64 times the room. [G: room]"};
     Param<int> decode_blocks_per_clk{
         *this,
         "decode_blocks_per_clk",
@@ -76,6 +77,16 @@ class TextureUnit final : public Unit {
         "block/clk",
         {1, 64},
         "Blocks of compressed textures decoded a cycle. [G: a quad may touch four, two quads a clock]"};
+    Param<int> astc_decode_slots{
+        *this,
+        "astc_decode_slots",
+        2,
+        "slot",
+        {1, 64},
+        "Blocks of other codes in whose place the decoder takes one of ASTC, which has integers to unpack "
+        "and "
+        "weights to interpolate. [G: a texel a clock and decoder is what the code was designed for, KDF]",
+        Effect::kSlower};
   };
   struct Stats : StatGroup {
     Counter groups{*this, "groups", "group", "Clauses' request groups taken in"};
@@ -90,6 +101,9 @@ class TextureUnit final : public Unit {
         *this, "blocks_decoded", "block",
         "Blocks of compressed textures decoded: distinct ones of a request, or those of the "
         "lines that were fetched"};
+    Counter decode_slots{
+        *this, "decode_slots", "slot",
+        "Places of the decoder that these took: `astc_decode_slots` a block of ASTC, else one"};
     Counter cache_emptied{
         *this, "cache_emptied", "time",
         "Times that the cache forgot all lines, since a pass samples what earlier ones drew"};
@@ -122,7 +136,7 @@ class TextureUnit final : public Unit {
     TextureToken token;
     int missing = 0;                 ///< look-ups not complete
     std::int64_t filter_cycles = 0;  ///< of the filter, or of the decoder beside it if that takes longer
-    std::uint32_t blocks = 0;        ///< to decode
+    std::uint32_t decode_slots = 0;  ///< of the decoder
     Tick ready = 0;
     std::uint32_t leg_take = 0;  ///< for a log of legs: of its request, or of the latest answer it waited for
   };
@@ -130,6 +144,7 @@ class TextureUnit final : public Unit {
   struct LookUp {
     models::TextureLine line{};
     models::DecodedLine decoded{};
+    models::Format format = models::Format::kUndefined;  ///< of the texture, where `decoded` counts
   };
   [[nodiscard]] Wake address_wake() const;
   [[nodiscard]] Wake answer_wake() const;
@@ -141,7 +156,7 @@ class TextureUnit final : public Unit {
   void plan(CoreSlot& slot, const TextureToken& token, Group& group, std::int64_t& address_cycles);
   void look_up(Tick now);
   void add_look_ups(Group& group);
-  void decode(Group& group, std::uint32_t blocks);
+  void decode(Group& group, std::uint32_t blocks, models::Format format);
   [[nodiscard]] L1Cache::Result access(const LookUp& line);
 
   const Params& params_;

@@ -50,9 +50,9 @@ constexpr std::array<ComponentBits, 4> packed(Place red, Place green, Place blue
 }
 
 /// A texture of compressed blocks.
-constexpr FormatInfo blocks(std::string_view name, std::uint8_t bytes, std::uint8_t channels,
-                            Numeric numeric) {
-  return {name, bytes, channels, kTexture, numeric, {}, {}, 4};
+constexpr FormatInfo blocks(std::string_view name, std::uint8_t bytes, std::uint8_t channels, Numeric numeric,
+                            std::uint8_t width = 4, std::uint8_t height = 4) {
+  return {name, bytes, channels, kTexture, numeric, {}, {}, width, height};
 }
 
 /// By the value of `Format`.
@@ -142,6 +142,44 @@ constexpr std::array<FormatInfo, static_cast<std::size_t>(kLastFormat) + 1> kFor
     blocks("BC6H_SFLOAT_BLOCK", 16, 3, Numeric::kFloat),
     blocks("BC7_UNORM_BLOCK", 16, 4, Numeric::kUnorm),
     blocks("BC7_SRGB_BLOCK", 16, 4, Numeric::kSrgb),
+    blocks("ETC2_R8G8B8_UNORM_BLOCK", 8, 3, Numeric::kUnorm),
+    blocks("ETC2_R8G8B8_SRGB_BLOCK", 8, 3, Numeric::kSrgb),
+    blocks("ETC2_R8G8B8A1_UNORM_BLOCK", 8, 4, Numeric::kUnorm),
+    blocks("ETC2_R8G8B8A1_SRGB_BLOCK", 8, 4, Numeric::kSrgb),
+    blocks("ETC2_R8G8B8A8_UNORM_BLOCK", 16, 4, Numeric::kUnorm),
+    blocks("ETC2_R8G8B8A8_SRGB_BLOCK", 16, 4, Numeric::kSrgb),
+    blocks("EAC_R11_UNORM_BLOCK", 8, 1, Numeric::kUnorm),
+    blocks("EAC_R11_SNORM_BLOCK", 8, 1, Numeric::kSnorm),
+    blocks("EAC_R11G11_UNORM_BLOCK", 16, 2, Numeric::kUnorm),
+    blocks("EAC_R11G11_SNORM_BLOCK", 16, 2, Numeric::kSnorm),
+    blocks("ASTC_4x4_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 4, 4),
+    blocks("ASTC_4x4_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 4, 4),
+    blocks("ASTC_5x4_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 5, 4),
+    blocks("ASTC_5x4_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 5, 4),
+    blocks("ASTC_5x5_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 5, 5),
+    blocks("ASTC_5x5_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 5, 5),
+    blocks("ASTC_6x5_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 6, 5),
+    blocks("ASTC_6x5_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 6, 5),
+    blocks("ASTC_6x6_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 6, 6),
+    blocks("ASTC_6x6_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 6, 6),
+    blocks("ASTC_8x5_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 8, 5),
+    blocks("ASTC_8x5_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 8, 5),
+    blocks("ASTC_8x6_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 8, 6),
+    blocks("ASTC_8x6_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 8, 6),
+    blocks("ASTC_8x8_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 8, 8),
+    blocks("ASTC_8x8_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 8, 8),
+    blocks("ASTC_10x5_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 10, 5),
+    blocks("ASTC_10x5_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 10, 5),
+    blocks("ASTC_10x6_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 10, 6),
+    blocks("ASTC_10x6_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 10, 6),
+    blocks("ASTC_10x8_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 10, 8),
+    blocks("ASTC_10x8_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 10, 8),
+    blocks("ASTC_10x10_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 10, 10),
+    blocks("ASTC_10x10_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 10, 10),
+    blocks("ASTC_12x10_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 12, 10),
+    blocks("ASTC_12x10_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 12, 10),
+    blocks("ASTC_12x12_UNORM_BLOCK", 16, 4, Numeric::kUnorm, 12, 12),
+    blocks("ASTC_12x12_SRGB_BLOCK", 16, 4, Numeric::kSrgb, 12, 12),
 }};
 
 }  // namespace

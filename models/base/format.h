@@ -98,9 +98,47 @@ enum class Format : std::uint8_t {
   kBc6hUfloat,
   kBc6hSfloat,
   kBc7Unorm,
-  kBc7Srgb
+  kBc7Srgb,
+  kEtc2Rgb8Unorm,
+  kEtc2Rgb8Srgb,
+  kEtc2Rgb8A1Unorm,
+  kEtc2Rgb8A1Srgb,
+  kEtc2Rgba8Unorm,
+  kEtc2Rgba8Srgb,
+  kEacR11Unorm,
+  kEacR11Snorm,
+  kEacR11G11Unorm,
+  kEacR11G11Snorm,
+  kAstc4x4Unorm,
+  kAstc4x4Srgb,
+  kAstc5x4Unorm,
+  kAstc5x4Srgb,
+  kAstc5x5Unorm,
+  kAstc5x5Srgb,
+  kAstc6x5Unorm,
+  kAstc6x5Srgb,
+  kAstc6x6Unorm,
+  kAstc6x6Srgb,
+  kAstc8x5Unorm,
+  kAstc8x5Srgb,
+  kAstc8x6Unorm,
+  kAstc8x6Srgb,
+  kAstc8x8Unorm,
+  kAstc8x8Srgb,
+  kAstc10x5Unorm,
+  kAstc10x5Srgb,
+  kAstc10x6Unorm,
+  kAstc10x6Srgb,
+  kAstc10x8Unorm,
+  kAstc10x8Srgb,
+  kAstc10x10Unorm,
+  kAstc10x10Srgb,
+  kAstc12x10Unorm,
+  kAstc12x10Srgb,
+  kAstc12x12Unorm,
+  kAstc12x12Srgb
 };
-inline constexpr Format kLastFormat = Format::kBc7Srgb;
+inline constexpr Format kLastFormat = Format::kAstc12x12Srgb;
 // clang-format on
 
 /// How the bits of a component stand for a number.
@@ -143,14 +181,15 @@ struct PixelCode {
 
 struct FormatInfo {
   std::string_view name;      ///< Vulkan's, without VK_FORMAT_
-  std::uint8_t bytes = 0;     ///< of a texel, pixel or attribute; of a block where `block_side` is not 1
+  std::uint8_t bytes = 0;     ///< of a texel, pixel or attribute; of a block where `block_width` is not 1
   std::uint8_t channels = 0;  ///< 1..4; those that lack read as (0, 0, 0, 1)
   std::uint8_t uses = 0;      ///< of `FormatUse`
   Numeric numeric = Numeric::kNone;
   /// Images: red, green, blue and alpha. Depth is red.
   std::array<ComponentBits, 4> component{};
   ComponentBits stencil{};
-  std::uint8_t block_side = 1;  ///< 4: texels come in compressed blocks of 4x4
+  /// Texels of a compressed block, 4..12 along each side; else 1x1.
+  std::uint8_t block_width = 1, block_height = 1;
   [[nodiscard]] constexpr bool may(FormatUse use) const { return (uses & use) != 0; }
 };
 
@@ -160,13 +199,16 @@ struct FormatInfo {
 /// Bytes of a texel, of a vertex attribute, or of a block of a compressed format; images have 1, 2, 4, 8 or
 /// 16.
 [[nodiscard]] inline std::uint32_t format_bytes(Format format) { return format_info(format).bytes; }
-[[nodiscard]] inline bool is_block_format(Format format) { return format_info(format).block_side != 1; }
+[[nodiscard]] inline bool is_block_format(Format format) { return format_info(format).block_width != 1; }
+[[nodiscard]] constexpr bool is_astc_format(Format format) {
+  return format >= Format::kAstc4x4Unorm && format <= Format::kAstc12x12Srgb;
+}
 /// Bytes of the texels of so many columns and rows: of whole blocks, where the format has blocks.
 [[nodiscard]] inline std::uint64_t format_area_bytes(Format format, std::uint32_t width,
                                                      std::uint32_t height) {
   const FormatInfo& info = format_info(format);
-  const std::uint64_t side = info.block_side;
-  return info.bytes * ((width + side - 1) / side) * ((height + side - 1) / side);
+  const std::uint64_t columns = info.block_width, rows = info.block_height;
+  return info.bytes * ((width + columns - 1) / columns) * ((height + rows - 1) / rows);
 }
 /// Components that an attribute of this format supplies (1..4).
 [[nodiscard]] inline int format_components(Format format) { return format_info(format).channels; }

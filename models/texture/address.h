@@ -86,37 +86,66 @@ inline AxisTexels select(const AxisTexels& a, const AxisTexels& b, __m256i mask)
           _mm256_blendv_epi8(a.weight, b.weight, mask)};
 }
 
-/// The parts of a texel's index that x and y contribute (TextureLayout::texel_index).
-inline __m256i x_index(__m256i x, Tiling tiling, int tile_shift) {
-  if (tiling == Tiling::kBlocks)
-    return _mm256_or_si256(
-        _mm256_and_si256(x, _mm256_set1_epi32(3)),
-        _mm256_slli_epi32(x_index(_mm256_srli_epi32(x, 2), Tiling::kTexture, tile_shift), 4));
+/// Places divided by the side of a block (1..12), of places below 2^14.
+inline __m256i blocks_before(__m256i place, std::uint32_t side) {
+  // The quotient is exact: what rounding the factor up adds stays below a step of the quotient.
+  const auto factor = static_cast<int>(((1u << 18) + side - 1) / side);
+  return _mm256_srli_epi32(_mm256_mullo_epi32(place, _mm256_set1_epi32(factor)), 18);
+}
+
+/// A column and a row in the tiling of textures; the row within its tile of 32.
+inline __m256i texture_column(__m256i x) {
   const auto field = [x](int mask) { return _mm256_and_si256(x, _mm256_set1_epi32(mask)); };
-  if (tiling == Tiling::kSurface) {
-    const __m256i low = _mm256_or_si256(field(1), _mm256_slli_epi32(field(6), 1));
-    return _mm256_or_si256(low, _mm256_slli_epi32(_mm256_srli_epi32(x, 3), tile_shift));
-  }
   const __m256i low = _mm256_or_si256(field(3), _mm256_slli_epi32(field(4), 1));
   return _mm256_or_si256(_mm256_or_si256(low, _mm256_slli_epi32(field(24), 2)),
                          _mm256_slli_epi32(_mm256_srli_epi32(x, 5), 10));
 }
-inline __m256i y_index(__m256i y, __m256i pitch, Tiling tiling) {
-  if (tiling == Tiling::kBlocks) {
-    const __m256i in_block = _mm256_slli_epi32(_mm256_and_si256(y, _mm256_set1_epi32(3)), 2);
-    const __m256i in_tile =
-        y_index(_mm256_and_si256(_mm256_srli_epi32(y, 2), _mm256_set1_epi32(31)), pitch, Tiling::kTexture);
-    return _mm256_add_epi32(_mm256_or_si256(in_block, _mm256_slli_epi32(in_tile, 4)),
-                            _mm256_mullo_epi32(_mm256_srli_epi32(y, 7), pitch));
-  }
+inline __m256i texture_row_in_tile(__m256i y) {
   const auto field = [y](int mask) { return _mm256_and_si256(y, _mm256_set1_epi32(mask)); };
-  if (tiling == Tiling::kSurface) {
-    const __m256i low = _mm256_or_si256(_mm256_slli_epi32(field(1), 1), _mm256_slli_epi32(field(6), 3));
-    return _mm256_add_epi32(low, _mm256_mullo_epi32(_mm256_srli_epi32(y, 3), pitch));
-  }
   const __m256i low = _mm256_or_si256(_mm256_slli_epi32(field(1), 2), _mm256_slli_epi32(field(2), 3));
-  return _mm256_add_epi32(_mm256_or_si256(low, _mm256_slli_epi32(field(28), 5)),
-                          _mm256_mullo_epi32(_mm256_srli_epi32(y, 5), pitch));
+  return _mm256_or_si256(low, _mm256_slli_epi32(field(28), 5));
+}
+
+/// The parts of a texel's index that x and y contribute (TextureLayout::texel_index).
+inline __m256i x_index(__m256i x, const TextureLayout& layout) {
+  switch (layout.tiling) {
+    case Tiling::kTexture: break;
+    case Tiling::kSurface: {
+      const auto field = [x](int mask) { return _mm256_and_si256(x, _mm256_set1_epi32(mask)); };
+      const __m256i low = _mm256_or_si256(field(1), _mm256_slli_epi32(field(6), 1));
+      return _mm256_or_si256(low, _mm256_slli_epi32(_mm256_srli_epi32(x, 3), layout.tile_shift));
+    }
+    case Tiling::kBlocks: {
+      const BlockPlaces& blocks = layout.blocks;
+      const __m256i column = blocks_before(x, blocks.width);
+      const __m256i in_block =
+          _mm256_sub_epi32(x, _mm256_mullo_epi32(column, _mm256_set1_epi32(static_cast<int>(blocks.width))));
+      return _mm256_add_epi32(in_block, _mm256_slli_epi32(texture_column(column), blocks.place_bits));
+    }
+  }
+  return texture_column(x);
+}
+inline __m256i y_index(__m256i y, __m256i pitch, const TextureLayout& layout) {
+  switch (layout.tiling) {
+    case Tiling::kTexture: break;
+    case Tiling::kSurface: {
+      const auto field = [y](int mask) { return _mm256_and_si256(y, _mm256_set1_epi32(mask)); };
+      const __m256i low = _mm256_or_si256(_mm256_slli_epi32(field(1), 1), _mm256_slli_epi32(field(6), 3));
+      return _mm256_add_epi32(low, _mm256_mullo_epi32(_mm256_srli_epi32(y, 3), pitch));
+    }
+    case Tiling::kBlocks: {
+      const BlockPlaces& blocks = layout.blocks;
+      const auto times = [](__m256i v, std::uint32_t factor) {
+        return _mm256_mullo_epi32(v, _mm256_set1_epi32(static_cast<int>(factor)));
+      };
+      const __m256i row = blocks_before(y, blocks.height);
+      const __m256i in_block = times(_mm256_sub_epi32(y, times(row, blocks.height)), blocks.width);
+      const __m256i in_tile = _mm256_slli_epi32(texture_row_in_tile(row), blocks.place_bits);
+      return _mm256_add_epi32(_mm256_add_epi32(in_block, in_tile),
+                              _mm256_mullo_epi32(_mm256_srli_epi32(row, 5), pitch));
+    }
+  }
+  return _mm256_add_epi32(texture_row_in_tile(y), _mm256_mullo_epi32(_mm256_srli_epi32(y, 5), pitch));
 }
 
 }  // namespace quadrille::models

@@ -24,10 +24,11 @@ void tile_blocks(const TextureLayout& layout, std::uint32_t level, std::size_t b
              h = static_cast<std::uint32_t>(layout.height[level]),
              slices = static_cast<std::uint32_t>(layout.slices[level]);
   for (std::uint32_t slice = 0; slice < slices; ++slice)
-    for (std::uint32_t y = 0; y < h; y += 4)
-      for (std::uint32_t x = 0; x < w; x += 4, source += bytes)
-        std::memcpy(tiled + bytes * (std::size_t{layout.texel_index(level, x, y, slice)} / 16), source,
-                    bytes);
+    for (std::uint32_t y = 0; y < h; y += layout.blocks.height)
+      for (std::uint32_t x = 0; x < w; x += layout.blocks.width, source += bytes)
+        std::memcpy(
+            tiled + bytes * (std::size_t{layout.texel_index(level, x, y, slice)} >> layout.blocks.place_bits),
+            source, bytes);
 }
 
 /// Tiles rows of texels of a size that the compiler knows.
@@ -54,7 +55,7 @@ namespace {
 
 /// `unit_bytes`: of a texel or of a block.
 TextureLayout make_layout(const TextureExtent& extent, std::uint32_t levels, std::uint32_t unit_bytes,
-                          Tiling tiling) {
+                          Tiling tiling, const BlockPlaces& blocks = {}) {
   const auto [width, height, depth, layers] = extent;
   for (const std::uint32_t side : {width, height, depth, layers})
     if (side < 1 || side > kMaxTextureSize)
@@ -68,16 +69,19 @@ TextureLayout make_layout(const TextureExtent& extent, std::uint32_t levels, std
   TextureLayout layout;
   layout.levels = levels;
   layout.tiling = tiling;
-  const int shift = layout.block_shift();
-  const std::uint32_t line_texels = (static_cast<std::uint32_t>(kLineBytes) << 2 * shift) / unit_bytes;
+  layout.blocks = blocks;
+  const std::uint32_t line_texels =
+      (static_cast<std::uint32_t>(kLineBytes) << blocks.place_bits) / unit_bytes;
   std::uint64_t next = 0;
   for (std::uint32_t level = 0; level < levels; ++level) {
     const std::uint32_t w = std::max(width >> level, 1u), h = std::max(height >> level, 1u),
                         slices = std::max(depth >> level, 1u) * layers;
     layout.width[level] = static_cast<std::int32_t>(w);
     layout.height[level] = static_cast<std::int32_t>(h);
-    const std::uint32_t tile = 32u << shift;
-    layout.pitch[level] = static_cast<std::int32_t>((w + tile - 1) / tile * tile * tile);
+    constexpr std::uint32_t kTile = 32;  // texels or blocks along a side
+    const std::uint32_t tile = kTile * blocks.width;
+    layout.pitch[level] =
+        static_cast<std::int32_t>((w + tile - 1) / tile * (kTile * kTile << blocks.place_bits));
     layout.slices[level] = static_cast<std::int32_t>(slices);
     // A slice ends with the line of its last texel, which has the highest index of all.
     const std::uint32_t slice =
@@ -89,7 +93,7 @@ TextureLayout make_layout(const TextureExtent& extent, std::uint32_t levels, std
       throw user_error("texture of {} x {} x {} texels, {} layers: it takes 2^31 texels and more", width,
                        height, depth, layers);
   }
-  layout.bytes = std::uint64_t{unit_bytes} * next >> 2 * shift;
+  layout.bytes = std::uint64_t{unit_bytes} * next >> blocks.place_bits;
   return layout;
 }
 
@@ -101,7 +105,7 @@ TextureLayout make_texture_layout(const TextureExtent& extent, std::uint32_t lev
 }
 TextureLayout make_texture_layout(Format format, const TextureExtent& extent, std::uint32_t levels) {
   return make_layout(extent, levels, format_bytes(format),
-                     is_block_format(format) ? Tiling::kBlocks : Tiling::kTexture);
+                     is_block_format(format) ? Tiling::kBlocks : Tiling::kTexture, block_places(format));
 }
 
 TextureView view_of_surfaces(std::span<const SurfaceLayout> levels, Format format) {

@@ -9,7 +9,8 @@
 /// address is a sum of a part of x and one of y.
 ///
 /// A texture of compressed blocks lies as one whose texels were the blocks: a tile is 32x32 blocks. Its
-/// texels are counted 16 to a block, row by row, so an index is a block and a place in it.
+/// texels are counted row by row within a block, and a block has as many places as the next power of two: 16
+/// for 4x4 texels, 64 for 6x6. So an index is a block and a place in it.
 #pragma once
 
 #include "models/base/format.h"
@@ -18,6 +19,7 @@
 #include "models/memory/surface.h"
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -34,6 +36,17 @@ struct TextureExtent {
   std::uint32_t width = 1, height = 1, depth = 1, layers = 1;
 };
 
+/// Texels of a block, and log2 of the places that they have among all texels' indices.
+struct BlockPlaces {
+  std::uint32_t width = 1, height = 1;
+  int place_bits = 0;
+};
+[[nodiscard]] inline BlockPlaces block_places(Format format) {
+  const FormatInfo& info = format_info(format);
+  const std::uint32_t width = info.block_width, height = info.block_height;
+  return {width, height, static_cast<int>(std::bit_width(width * height - 1))};
+}
+
 /// Where the texels of a mip chain lie, in texels from its base. Arrays by level, padded for vector
 /// loads. The slices of a volume's level, or the layers of an array's, lie one behind the other.
 struct TextureLayout {
@@ -47,6 +60,7 @@ struct TextureLayout {
   std::uint64_t bytes = 0;                         ///< whole chain; a multiple of a line
   /// log2 of the texels from a tile of a surface to the next
   int tile_shift = 6;
+  BlockPlaces blocks;  ///< 1x1 but where `tiling` is that of blocks
 
   [[nodiscard]] static constexpr std::uint32_t x_part(std::uint32_t x) {
     return (x & 3) | (x & 4) << 1 | (x & 24) << 2 | (x >> 5) << 10;
@@ -68,13 +82,14 @@ struct TextureLayout {
     if (tiling == Tiling::kSurface)
       return start + surface_x_part(x) + surface_y_part_in_tile(y) +
              (y >> 3) * static_cast<std::uint32_t>(pitch[level]);
-    if (tiling == Tiling::kBlocks)
-      return start + (x & 3) + ((y & 3) << 2) + ((x_part(x >> 2) + y_part_in_tile(y >> 2)) << 4) +
-             (y >> 7) * static_cast<std::uint32_t>(pitch[level]);
+    if (tiling == Tiling::kBlocks) {
+      const std::uint32_t column = x / blocks.width, row = y / blocks.height;
+      return start + x % blocks.width + y % blocks.height * blocks.width +
+             ((x_part(column) + y_part_in_tile(row & 31)) << blocks.place_bits) +
+             (row >> 5) * static_cast<std::uint32_t>(pitch[level]);
+    }
     return start + x_part(x) + y_part_in_tile(y) + (y >> 5) * static_cast<std::uint32_t>(pitch[level]);
   }
-  /// log2 of the texels along a side of a block: half of that of a block's texels
-  [[nodiscard]] constexpr int block_shift() const { return tiling == Tiling::kBlocks ? 2 : 0; }
 };
 
 /// Lays out a chain of texels of 1, 2, 4, 8 or 16 bytes, or as `format` has them. Each level begins with a
@@ -100,7 +115,7 @@ struct TextureView {
   /// Of a texel, or of the first byte that may hold a part of it.
   [[nodiscard]] std::uint64_t texel_address(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
     return base + (std::uint64_t{format_bytes(format)} * layout.texel_index(level, x, y) >>
-                   2 * layout.block_shift());
+                   layout.blocks.place_bits);
   }
 };
 

@@ -195,10 +195,9 @@ class OperationPlanner {
                     const AxisTexels& y, TexturePlan::Footprint& out) const {
     const __m256i apart = _mm256_i32gather_epi32(view_.layout.slice_texels.data(), level, 4);
     const __m256i start = _mm256_add_epi32(at.first, _mm256_mullo_epi32(slice, apart));
-    const Tiling tiling = view_.layout.tiling;
-    const int shift = view_.layout.tile_shift;
-    const __m256i column[2] = {x_index(x.first, tiling, shift), x_index(x.second, tiling, shift)},
-                  row[2] = {y_index(y.first, at.pitch, tiling), y_index(y.second, at.pitch, tiling)};
+    const TextureLayout& layout = view_.layout;
+    const __m256i column[2] = {x_index(x.first, layout), x_index(x.second, layout)},
+                  row[2] = {y_index(y.first, at.pitch, layout), y_index(y.second, at.pitch, layout)};
     for (std::size_t corner = 0; corner < 4; ++corner)
       store_lanes(out.texel[corner].data(),
                   _mm256_add_epi32(start, _mm256_add_epi32(column[corner % 2], row[corner / 2])));

@@ -55,7 +55,7 @@ class LineCollector {
  public:
   explicit LineCollector(TexturePlan& plan)
       : plan_(plan),
-        texel_shift_(std::countr_zero(format_bytes(plan.format)) - (is_block_format(plan.format) ? 4 : 0)) {
+        texel_shift_(std::countr_zero(format_bytes(plan.format)) - block_places(plan.format).place_bits) {
     plan_.line_count = 0;
   }
 
@@ -123,8 +123,8 @@ class LineCollector {
   }
 
   TexturePlan& plan_;
-  int texel_shift_;                       // log2 of a texel's bytes; -1 where a block of 16 has 8
-  std::uint64_t seen_ = 0;                // buckets of which `latest_` is set
+  int texel_shift_;         // log2 of a texel's bytes; below 0 where a block has more places than bytes
+  std::uint64_t seen_ = 0;  // buckets of which `latest_` is set
   std::array<std::uint16_t, 64> latest_;  // index of the line that a hash met last
 };
 
@@ -132,18 +132,27 @@ class LineCollector {
 class BlockCollector {
  public:
   /// `most`: blocks that the request can have; a power of two.
-  BlockCollector(TexturePlan& plan, std::size_t most) : plan_(plan), places_(2 * most) {
+  BlockCollector(TexturePlan& plan, std::size_t most)
+      : plan_(plan), places_(2 * most), place_bits_(block_places(plan.format).place_bits) {
     plan_.block_count = 0;
-    if (is_block_format(plan.format)) std::fill_n(place_.begin(), places_, kNone);
+    if (!is_block_format(plan.format)) return;
+    std::fill_n(place_.begin(), places_, kNone);
+    line_shift_ = decoded_line_shift(plan.format);
   }
   void add(TexturePlan::Footprint& footprint, std::uint32_t used) {
     for (std::size_t corner = 0; corner < 4; ++corner) {
       const std::uint32_t read = used & ~((footprint.border | footprint.missing) >> (8 * corner));
       for (std::size_t lane = 0; lane < 8; ++lane) {
         std::int32_t& texel = footprint.texel[corner][lane];
-        texel = (read >> lane & 1) == 0
-                    ? 0
-                    : 16 * place_of(static_cast<std::uint32_t>(texel) >> 4) + (texel & 15);
+        if ((read >> lane & 1) == 0) {
+          texel = 0;
+          continue;
+        }
+        const std::int32_t in_block = texel & ((1 << place_bits_) - 1);
+        const std::int32_t place = place_of(static_cast<std::uint32_t>(texel) >> place_bits_);
+        plan_.block_lines[static_cast<std::size_t>(place)] |=
+            static_cast<std::uint8_t>(1u << (in_block >> line_shift_));
+        texel = (place << place_bits_) + in_block;
       }
     }
   }
@@ -156,6 +165,7 @@ class BlockCollector {
     while (place_[at] != kNone && plan_.blocks[place_[at]] != block) at = (at + 1) % places_;
     if (place_[at] == kNone) {
       place_[at] = static_cast<std::uint16_t>(plan_.block_count);
+      plan_.block_lines[place_[at]] = 0;
       plan_.blocks[static_cast<std::size_t>(plan_.block_count++)] = block;
     }
     return place_[at];
@@ -163,6 +173,8 @@ class BlockCollector {
 
   TexturePlan& plan_;
   std::size_t places_;
+  int place_bits_;      // log2 of a block's places among the texels' indices
+  int line_shift_ = 0;  // log2 of the places that a line of decoded texels has
   std::array<std::uint16_t, std::size_t{2} * TexturePlan::kMaxBlocks>
       place_;  // by hash: index into the plan's blocks
 };

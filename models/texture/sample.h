@@ -48,8 +48,8 @@ struct TexturePlan {
 
   /// A group's texels in one mip level.
   struct Footprint {
-    /// index from the texture's base: (0,0) (1,0) (0,1) (1,1). Of a block format: 16 times the place of the
-    /// block in `blocks`, and the texel in it; 0 for what is not read.
+    /// index from the texture's base: (0,0) (1,0) (0,1) (1,1). Of a block format: the place of the block
+    /// in `blocks`, times a block's places (`BlockPlaces`), and the texel in it; 0 for what is not read.
     alignas(32) std::array<std::array<std::int32_t, 8>, 4> texel;
     /// weights of the right and lower texels, 0..255 of 256
     alignas(32) std::array<std::int32_t, 8> frac_x, frac_y;
@@ -92,6 +92,8 @@ struct TexturePlan {
   /// first touch.
   int block_count = 0;
   std::array<std::uint32_t, kMaxBlocks> blocks;
+  /// Of each: bit i for line i of its decoded texels, of `decoded_line_shift` places, that is read.
+  std::array<std::uint8_t, kMaxBlocks> block_lines;
   // Work, for the unit's timing and counters.
   /// quad x level filter operations: two for each of 8 bytes a texel as it is filtered, four for 16
   std::uint32_t bilinear_quads = 0;
@@ -108,8 +110,12 @@ void plan_texture(const TextureView& view, const SamplerState& sampler, const Te
 void plan_operation(const TextureView& view, const SamplerState& sampler, const TextureRequest& request,
                     const Precision& precision, TexturePlan& plan);
 
+/// log2 of the places of a block format's texels that a line of 128 bytes of them decoded has.
+[[nodiscard]] int decoded_line_shift(Format format);
+
 /// The distinct lines of 128 bytes of decoded texels that a plan of a block format reads, in order of first
-/// touch, to the end of `lines`.
+/// touch, to the end of `lines`. Lines are numbered for textures in the first 16 GiB of memory, or 2 GiB
+/// where a block decodes to more than eight times its bytes; beyond, it throws `UserError`.
 void add_decoded_lines(const TexturePlan& plan, std::vector<DecodedLine>& lines);
 
 /// Reads and filters the texels of a plan. Lanes that are not active receive unspecified finite values.

@@ -388,19 +388,20 @@ void filter_blocks(const TexturePlan& plan, const std::byte* base, std::array<La
   thread_local std::vector<std::byte> texels;
   const BlockCode code = block_code(plan.format);
   const BlockCodeInfo& info = block_code_info(code);
-  const std::size_t block_texels = std::size_t{kBlockTexels} * info.decoded_bytes;
-  texels.resize(
-      std::max({texels.size(), block_texels, static_cast<std::size_t>(plan.block_count) * block_texels}));
+  // Texels of a block lie together, and blocks as far apart as their indices have them.
+  const std::size_t bytes = std::size_t{info.texels()} * info.decoded_bytes;
+  const std::size_t apart = std::size_t{info.decoded_bytes} << block_places(plan.format).place_bits;
+  texels.resize(std::max({texels.size(), apart, static_cast<std::size_t>(plan.block_count) * apart}));
   BlockTexels block;
   for (std::size_t i = 0; i < static_cast<std::size_t>(plan.block_count); ++i) {
     decode_block(code, {base + std::size_t{plan.blocks[i]} * info.bytes, info.bytes}, block);
-    std::memcpy(texels.data() + i * block_texels, block.bytes.data(), block_texels);
+    std::memcpy(texels.data() + i * apart, block.bytes.data(), bytes);
   }
   // Lanes that read nothing name the first texel, whose components that the format lacks are still read.
   if (plan.block_count == 0) {
     constexpr std::array<std::byte, kMaxBlockBytes> kZeros{};
     decode_block(code, {kZeros.data(), info.bytes}, block);
-    std::memcpy(texels.data(), block.bytes.data(), block_texels);
+    std::memcpy(texels.data(), block.bytes.data(), bytes);
   }
   filter(plan, {texels.data(), decoded_format(plan.format), format_info(plan.format).channels}, rgba);
 }

@@ -28,18 +28,17 @@ void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v
                    y = wrapped(rows, at.height, context.sampler.wrap_v);
   out.border = has_border(context.sampler) ? beyond_border(context.sampler, at, columns, rows) : 0;
   out.missing = 0;
-  const Tiling tiling = context.view.layout.tiling;
-  const int shift = context.view.layout.tile_shift;
-  const __m256i left = _mm256_add_epi32(at.first, x_index(x.first, tiling, shift)),
-                right = _mm256_add_epi32(at.first, x_index(x.second, tiling, shift));
-  const __m256i top = y_index(y.first, at.pitch, tiling), bottom = y_index(y.second, at.pitch, tiling);
+  const TextureLayout& layout = context.view.layout;
+  const __m256i left = _mm256_add_epi32(at.first, x_index(x.first, layout)),
+                right = _mm256_add_epi32(at.first, x_index(x.second, layout));
+  const __m256i top = y_index(y.first, at.pitch, layout), bottom = y_index(y.second, at.pitch, layout);
   const __m256i texel[4] = {_mm256_add_epi32(left, top), _mm256_add_epi32(right, top),
                             _mm256_add_epi32(left, bottom), _mm256_add_epi32(right, bottom)};
   for (std::size_t corner = 0; corner < 4; ++corner) store_lanes(out.texel[corner].data(), texel[corner]);
   store_lanes(out.frac_x.data(), x.weight);
   store_lanes(out.frac_y.data(), y.weight);
   lines.add(texel, used, out.border);
-  if (tiling == Tiling::kBlocks) blocks.add(out, used);
+  if (layout.tiling == Tiling::kBlocks) blocks.add(out, used);
 }
 
 }  // namespace

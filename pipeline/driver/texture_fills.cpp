@@ -23,8 +23,8 @@ models::TextureFill& TextureFills::add(const traces::Image& image, const models:
     seconds_ += std::chrono::duration<double>(Clock::now() - start).count();
     cpu_seconds_ += pipeline::cpu_seconds() - cpu;
   };
-  const std::uint64_t side = models::format_info(image.format).block_side;
-  const std::uint64_t texels = traces::texel_bytes(image) / traces::format_bytes(image.format) * side * side;
+  const models::FormatInfo& info = models::format_info(image.format);
+  const std::uint64_t texels = traces::texel_bytes(image) / info.bytes * info.block_width * info.block_height;
   entries_.push_back({models::TextureFill(tile), texels});
   return entries_.back().fill;
 }

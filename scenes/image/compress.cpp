@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "models/base/error.h"
+#include "scenes/image/astc_encoder.h"
 
 namespace quadrille::scenes {
 namespace {
@@ -15,7 +16,11 @@ using traces::Format;
 Format block_format(Format format, TextureCompression compression) {
   const bool srgb = format == Format::kR8G8B8A8Srgb;
   if (compression == TextureCompression::kBc1) return srgb ? Format::kBc1RgbaSrgb : Format::kBc1RgbaUnorm;
-  return srgb ? Format::kBc3Srgb : Format::kBc3Unorm;
+  if (compression == TextureCompression::kBc3) return srgb ? Format::kBc3Srgb : Format::kBc3Unorm;
+  // Formats of ASTC are in the same order, each twice.
+  const int size = static_cast<int>(compression) - static_cast<int>(TextureCompression::kAstc4x4);
+  return static_cast<Format>(static_cast<int>(srgb ? Format::kAstc4x4Srgb : Format::kAstc4x4Unorm) +
+                             2 * size);
 }
 
 traces::UnpackTexels compressing(const std::shared_ptr<const traces::UnpackTexels>& packed,
@@ -47,6 +52,9 @@ std::vector<std::byte> compress_texels(std::span<const std::byte> rgba, std::uin
                                        std::uint32_t height, TextureCompression compression) {
   QUADRILLE_CHECK(rgba.size() == std::size_t{4} * width * height, "{} bytes for {} x {} texels", rgba.size(),
                   width, height);
+  const models::FormatInfo& info = models::format_info(block_format(Format::kR8G8B8A8Unorm, compression));
+  if (compression >= TextureCompression::kAstc4x4)
+    return encode_astc(rgba, width, height, info.block_width, info.block_height);
   const int flags = compression == TextureCompression::kBc1 ? squish::kDxt1 : squish::kDxt5;
   const int w = static_cast<int>(width), h = static_cast<int>(height);
   std::vector<std::byte> blocks(static_cast<std::size_t>(squish::GetStorageRequirements(w, h, flags)));

@@ -49,10 +49,11 @@ struct Named {
   std::uint32_t number;
   BlockCode code;
 };
-/// VkFormat; UNORM and sRGB are alike here, since glTF says by a texture's role which it is. [VK1.3
+/// VkFormat; UNORM and sRGB are alike here, since glTF says by a texture's role which it is. (Blocks of ASTC
+/// round as their own format says.) [VK1.3
 /// #formats-definition]
 constexpr std::uint32_t kRgba8Unorm = 37, kRgba8Srgb = 43;
-constexpr std::array<Named, 16> kVulkan{{{131, BlockCode::kBc1Rgb},
+constexpr std::array<Named, 54> kVulkan{{{131, BlockCode::kBc1Rgb},
                                          {132, BlockCode::kBc1Rgb},
                                          {133, BlockCode::kBc1Rgba},
                                          {134, BlockCode::kBc1Rgba},
@@ -67,7 +68,45 @@ constexpr std::array<Named, 16> kVulkan{{{131, BlockCode::kBc1Rgb},
                                          {143, BlockCode::kBc6hUfloat},
                                          {144, BlockCode::kBc6hSfloat},
                                          {145, BlockCode::kBc7},
-                                         {146, BlockCode::kBc7}}};
+                                         {146, BlockCode::kBc7},
+                                         {147, BlockCode::kEtc2Rgb8},
+                                         {148, BlockCode::kEtc2Rgb8},
+                                         {149, BlockCode::kEtc2Rgb8A1},
+                                         {150, BlockCode::kEtc2Rgb8A1},
+                                         {151, BlockCode::kEtc2Rgba8},
+                                         {152, BlockCode::kEtc2Rgba8},
+                                         {153, BlockCode::kEacR11Unorm},
+                                         {154, BlockCode::kEacR11Snorm},
+                                         {155, BlockCode::kEacR11G11Unorm},
+                                         {156, BlockCode::kEacR11G11Snorm},
+                                         {157, BlockCode::kAstc4x4Unorm},
+                                         {158, BlockCode::kAstc4x4Srgb},
+                                         {159, BlockCode::kAstc5x4Unorm},
+                                         {160, BlockCode::kAstc5x4Srgb},
+                                         {161, BlockCode::kAstc5x5Unorm},
+                                         {162, BlockCode::kAstc5x5Srgb},
+                                         {163, BlockCode::kAstc6x5Unorm},
+                                         {164, BlockCode::kAstc6x5Srgb},
+                                         {165, BlockCode::kAstc6x6Unorm},
+                                         {166, BlockCode::kAstc6x6Srgb},
+                                         {167, BlockCode::kAstc8x5Unorm},
+                                         {168, BlockCode::kAstc8x5Srgb},
+                                         {169, BlockCode::kAstc8x6Unorm},
+                                         {170, BlockCode::kAstc8x6Srgb},
+                                         {171, BlockCode::kAstc8x8Unorm},
+                                         {172, BlockCode::kAstc8x8Srgb},
+                                         {173, BlockCode::kAstc10x5Unorm},
+                                         {174, BlockCode::kAstc10x5Srgb},
+                                         {175, BlockCode::kAstc10x6Unorm},
+                                         {176, BlockCode::kAstc10x6Srgb},
+                                         {177, BlockCode::kAstc10x8Unorm},
+                                         {178, BlockCode::kAstc10x8Srgb},
+                                         {179, BlockCode::kAstc10x10Unorm},
+                                         {180, BlockCode::kAstc10x10Srgb},
+                                         {181, BlockCode::kAstc12x10Unorm},
+                                         {182, BlockCode::kAstc12x10Srgb},
+                                         {183, BlockCode::kAstc12x12Unorm},
+                                         {184, BlockCode::kAstc12x12Srgb}}};
 /// DXGI_FORMAT of blocks. [DDS]
 constexpr std::array<Named, 14> kDxgi{{{71, BlockCode::kBc1Rgba},
                                        {72, BlockCode::kBc1Rgba},
@@ -129,9 +168,9 @@ Extent level_extent(const TextureFile& texture, std::uint32_t level) {
 std::uint64_t level_bytes(const TextureFile& texture, std::uint32_t level) {
   const auto [width, height] = level_extent(texture, level);
   if (!texture.code) return std::uint64_t{4} * width * height;
-  constexpr std::uint32_t kSide = models::kBlockSide;
-  return std::uint64_t{models::block_code_info(*texture.code).bytes} * ((width + kSide - 1) / kSide) *
-         ((height + kSide - 1) / kSide);
+  const models::BlockCodeInfo& info = models::block_code_info(*texture.code);
+  return std::uint64_t{info.bytes} * ((width + info.width - 1) / info.width) *
+         ((height + info.height - 1) / info.height);
 }
 
 // DDS.
@@ -194,8 +233,10 @@ TextureFile ktx_header(const Fields& file) {
   const std::uint32_t format = file.word(12);
   texture.code = named(kVulkan, format);
   if (!texture.code && format != kRgba8Unorm && format != kRgba8Srgb)
-    file.fail(fmt::format("has VkFormat {}; R8G8B8A8 ({} and {}) and BC1 to BC7 ({} to {}) are supported",
-                          format, kRgba8Unorm, kRgba8Srgb, kVulkan.front().number, kVulkan.back().number));
+    file.fail(
+        fmt::format("has VkFormat {}; R8G8B8A8 ({} and {}) and BC1 to BC7, ETC2, EAC and ASTC of 8 bits "
+                    "({} to {}) are supported",
+                    format, kRgba8Unorm, kRgba8Srgb, kVulkan.front().number, kVulkan.back().number));
   texture.width = file.word(20);
   texture.height = file.word(24);
   texture.levels = std::max(1u, file.word(40));
@@ -245,17 +286,29 @@ std::uint8_t eight_bits_of_half(const std::byte* at) {
   return static_cast<std::uint8_t>(std::lround(255 * value));
 }
 
+/// A channel of EAC in 255ths, rounded to nearest; one below 0 is 0.
+std::uint8_t eight_bits_of_sixteen(BlockCode code, const std::byte* at) {
+  std::uint16_t bits = 0;
+  std::memcpy(&bits, at, sizeof bits);
+  if (code == BlockCode::kEacR11Unorm || code == BlockCode::kEacR11G11Unorm)
+    return static_cast<std::uint8_t>((bits * 255u + 32767) / 65535);
+  return static_cast<std::uint8_t>((std::max(0, int{static_cast<std::int16_t>(bits)}) * 255 + 16383) / 32767);
+}
+
 /// A texel of a decoded block.
 std::array<std::uint8_t, 4> eight_bits(BlockCode code, const models::BlockTexels& block, std::size_t texel) {
   const models::BlockCodeInfo& info = models::block_code_info(code);
   const std::byte* const at = block.bytes.data() + texel * info.decoded_bytes;
   const bool is_signed = code == BlockCode::kBc4Snorm || code == BlockCode::kBc5Snorm;
-  const bool halves = info.decoded == models::DecodedTexels::kRgba16f;
+  const bool halves = info.decoded == models::DecodedTexels::kRgba16f,
+             wide =
+                 info.decoded == models::DecodedTexels::kR16 || info.decoded == models::DecodedTexels::kRg16;
   std::array<std::uint8_t, 4> rgba{0, 0, 0, 255};
-  const std::size_t channels = halves ? 4 : info.decoded_bytes;
+  const std::size_t channels = halves || wide ? info.decoded_bytes / 2 : info.decoded_bytes;
   for (std::size_t c = 0; c < channels; ++c) {
     const auto value = static_cast<std::uint8_t>(at[c]);
     if (halves) rgba[c] = eight_bits_of_half(at + 2 * c);
+    else if (wide) rgba[c] = eight_bits_of_sixteen(code, at + 2 * c);
     else if (is_signed)
       rgba[c] =
           static_cast<std::uint8_t>((std::max(0, int{static_cast<std::int8_t>(value)}) * 255 + 63) / 127);
@@ -291,14 +344,14 @@ Rgba8Image decoded_level(const TextureFile& file, std::uint32_t level) {
     std::memcpy(picture.pixels.data(), rest.data(), rest.size());
     return picture;
   }
-  const std::size_t block_bytes = models::block_code_info(*file.code).bytes;
+  const models::BlockCodeInfo& info = models::block_code_info(*file.code);
   models::BlockTexels block;
-  for (std::uint32_t y = 0; y < height; y += models::kBlockSide) {
-    for (std::uint32_t x = 0; x < width; x += models::kBlockSide) {
-      models::decode_block(*file.code, rest.first(block_bytes), block);
-      rest = rest.subspan(block_bytes);
-      for (std::uint32_t i = 0; i < models::kBlockTexels; ++i) {
-        const std::uint32_t column = x + i % models::kBlockSide, row = y + i / models::kBlockSide;
+  for (std::uint32_t y = 0; y < height; y += info.height) {
+    for (std::uint32_t x = 0; x < width; x += info.width) {
+      models::decode_block(*file.code, rest.first(info.bytes), block);
+      rest = rest.subspan(info.bytes);
+      for (std::uint32_t i = 0; i < info.texels(); ++i) {
+        const std::uint32_t column = x + i % info.width, row = y + i / info.width;
         if (column >= width || row >= height) continue;
         const std::array<std::uint8_t, 4> rgba = eight_bits(*file.code, block, i);
         std::memcpy(&picture.pixels[4 * (std::size_t{row} * width + column)], rgba.data(), rgba.size());

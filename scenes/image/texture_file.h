@@ -16,8 +16,8 @@ namespace quadrille::scenes {
 struct TextureFile {
   std::optional<models::BlockCode> code;  ///< of its blocks; none: RGBA8
   std::uint32_t width = 0, height = 0, levels = 1;
-  /// All levels, finest first, tightly packed: rows of texels, or of blocks of 4x4, of which those at the
-  /// right and lower edges may reach beyond the level.
+  /// All levels, finest first, tightly packed: rows of texels, or of blocks, of which those at the right
+  /// and lower edges may reach beyond the level.
   std::vector<std::byte> bytes;
 };
 
@@ -25,7 +25,8 @@ struct TextureFile {
 /// are pictures (`decode_image`), for which levels are computed.
 [[nodiscard]] bool is_texture_file(std::span<const std::byte> bytes);
 
-/// Reads one: a single image of two dimensions, of RGBA8 or BC1 to BC7, with sides of 1..16384, at most
+/// Reads one: a single image of two dimensions, of RGBA8, BC1 to BC7, ETC2, EAC or ASTC, with sides of
+/// 1..16384, at most
 /// `kMaxImagePixels`, and levels that lie within the file. KTX2 may be compressed by Zstandard; Basis
 /// Universal (BasisLZ, UASTC) is refused by name. Throws `UserError` that starts with `name`. [KTX2], [DDS]
 [[nodiscard]] TextureFile read_texture_file(std::span<const std::byte> bytes, const std::string& name);

@@ -82,11 +82,12 @@ std::vector<traces::CommandStream> own_streams(const Setting& setting) {
                               {.topology = traces::Topology::kLineList, .depth = true}));
   streams.push_back(stream_of(small, {.topology = traces::Topology::kLineList}));
   streams.push_back(stream_of(small, {.topology = traces::Topology::kPointList}));
-  const DrawTexture blocks{4 * setting.width, 4 * setting.height, 1, traces::Filter::kLinear,
-                           Format::kBc1RgbaUnorm};
-  streams.push_back(
-      stream_of(layers(setting.width, setting.height, 2, false),
-                {.fragment_shader = sampling_shader(blocks, {.right = 4, .down = 4}), .texture = blocks}));
+  for (const Format format : {Format::kBc1RgbaUnorm, Format::kAstc4x4Unorm}) {
+    const DrawTexture blocks{4 * setting.width, 4 * setting.height, 1, traces::Filter::kLinear, format};
+    streams.push_back(
+        stream_of(layers(setting.width, setting.height, 2, false),
+                  {.fragment_shader = sampling_shader(blocks, {.right = 4, .down = 4}), .texture = blocks}));
+  }
   streams.push_back(storage_stream(setting));
   streams.push_back(stream_of(moved_right(small, 2 * setting.width), {.draws = kLayers}));
   return streams;

@@ -201,6 +201,15 @@ void add_cores(Frames& frames, std::uint32_t width, std::uint32_t height) {
              {"texture.decode_blocks_per_clk=1"}, [](const Work& w, const MachineConfig& m) {
                return 4 * w.quads / m.texture.decode_blocks_per_clk / m.gpu.cores;
              });
+  const DrawTexture astc{4 * width, 4 * height, 1, traces::Filter::kNearest, traces::Format::kAstc4x4Unorm};
+  frames.add("texture", "the same of ASTC, a block in two cycles",
+             "quads x 4 blocks x astc_decode_slots / decode_blocks_per_clk / cores",
+             covered_frame(width, height, 32),
+             {.fragment_shader = sampling_shader(astc, {.right = 4, .down = 4}), .texture = astc},
+             {"texture.decode_blocks_per_clk=1"}, [](const Work& w, const MachineConfig& m) {
+               return 4 * w.quads * m.texture.astc_decode_slots / m.texture.decode_blocks_per_clk /
+                      m.gpu.cores;
+             });
 }
 
 /// A tile's first half, 8 x 4 pixels, is a warp.

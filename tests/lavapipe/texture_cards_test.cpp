@@ -82,7 +82,10 @@ TEST_CASE("lavapipe: textures of every format have the driver's numbers with eac
   }
   for (const std::string_view name : lacking) {
     INFO(name);
-    CHECK((name == "R8_SRGB" || name == "R8G8_SRGB" || name == "R4G4_UNORM_PACK8" ||
+    // tests/lavapipe/gles_blocks_test.cpp holds the codes that the driver lacks.
+    const bool other_blocks =
+        name.starts_with("ETC2_") || name.starts_with("EAC_") || name.starts_with("ASTC_");
+    CHECK((other_blocks || name == "R8_SRGB" || name == "R8G8_SRGB" || name == "R4G4_UNORM_PACK8" ||
            name == "R4G4B4A4_UNORM_PACK16"));
   }
 }

@@ -26,7 +26,7 @@ traces::CommandStream texel_a_pixel(Format format) {
 }
 
 struct Counts {
-  std::uint64_t read_bytes = 0, blocks_decoded = 0;
+  std::uint64_t read_bytes = 0, blocks_decoded = 0, decode_slots = 0;
 };
 
 /// Of the one texture unit of a machine of one core, whose cache the texture fits in.
@@ -42,6 +42,7 @@ Counts counts_of(Format format, hw::BlocksHeld held) {
     for (const CounterFigure& counter : unit.counters) {
       if (counter.name == "read_bytes") counts.read_bytes += counter.value;
       if (counter.name == "blocks_decoded") counts.blocks_decoded += counter.value;
+      if (counter.name == "decode_slots") counts.decode_slots += counter.value;
     }
   }
   return counts;
@@ -70,6 +71,65 @@ TEST_CASE("block textures: BC7 moves a fourth of the bytes of RGBA8") {
   CHECK(counts.blocks_decoded == kBlocks);
 }
 
+TEST_CASE("block textures: ETC2 and EAC move as many bytes as their blocks have") {
+  for (const Format format : {Format::kEtc2Rgb8Unorm, Format::kEtc2Rgb8A1Srgb, Format::kEacR11Unorm}) {
+    const Counts counts = counts_of(format, hw::BlocksHeld::kCompressed);
+    CHECK(counts.read_bytes == kTexels / 2);
+    CHECK(counts.blocks_decoded == kBlocks);
+    CHECK(counts.decode_slots == kBlocks);
+  }
+  CHECK(counts_of(Format::kEtc2Rgba8Srgb, hw::BlocksHeld::kCompressed).read_bytes == kTexels);
+  CHECK(counts_of(Format::kEacR11G11Snorm, hw::BlocksHeld::kCompressed).read_bytes == kTexels);
+}
+
+TEST_CASE("block textures: ASTC moves 16 bytes a block of any size, and takes two places of the decoder") {
+  // Sectors hold two blocks, and there are even numbers of them in a row.
+  for (const auto& [format, blocks] : {std::pair{Format::kAstc4x4Unorm, 12 * 12},
+                                       {Format::kAstc5x4Srgb, 10 * 12},
+                                       {Format::kAstc5x5Unorm, 10 * 10},
+                                       {Format::kAstc6x6Unorm, 8 * 8},
+                                       {Format::kAstc8x5Unorm, 6 * 10},
+                                       {Format::kAstc8x8Srgb, 6 * 6},
+                                       {Format::kAstc12x12Unorm, 4 * 4}}) {
+    const Counts counts = counts_of(format, hw::BlocksHeld::kCompressed);
+    INFO(models::format_info(format).name);
+    CHECK(counts.read_bytes == 16 * static_cast<std::uint64_t>(blocks));
+    CHECK(counts.blocks_decoded >= static_cast<std::uint64_t>(blocks));
+    CHECK(counts.decode_slots == 2 * counts.blocks_decoded);
+  }
+  // A warp is 8x4 pixels: half a block of 8x8.
+  CHECK(counts_of(Format::kAstc8x8Unorm, hw::BlocksHeld::kCompressed).blocks_decoded == 2 * 6 * 6);
+}
+
+TEST_CASE("block textures: a decoded block of ASTC fills several lines, each decoded by itself") {
+  // 8x8 texels are two lines; 6x6 are 144 bytes, so the last row but four texels lies in a second line. Each
+  // line fetches the sector of its block.
+  const Counts eight = counts_of(Format::kAstc8x8Unorm, hw::BlocksHeld::kDecoded),
+               six = counts_of(Format::kAstc6x6Unorm, hw::BlocksHeld::kDecoded),
+               five = counts_of(Format::kAstc5x5Unorm, hw::BlocksHeld::kDecoded),
+               four = counts_of(Format::kAstc4x4Unorm, hw::BlocksHeld::kDecoded);
+  CHECK(eight.blocks_decoded == 2 * 6 * 6);
+  CHECK(eight.read_bytes == 32 * 2 * 6 * 6);
+  CHECK(six.blocks_decoded == 2 * 8 * 8);
+  CHECK(six.read_bytes == 32 * 2 * 8 * 8);
+  CHECK(five.blocks_decoded == 10 * 10);
+  CHECK(five.read_bytes == 32 * 10 * 10);
+  CHECK(four.blocks_decoded == kBlocks);
+  CHECK(four.read_bytes == kTexels);
+}
+
+TEST_CASE("block textures: a slower decoder of ASTC takes longer, and leaves other codes alone") {
+  const auto cycles = [](Format format, int slots) {
+    MachineConfig config;
+    config.gpu.cores.set(1);
+    config.texture.decode_blocks_per_clk.set(1);
+    config.texture.astc_decode_slots.set(slots);
+    return render_exact(texel_a_pixel(format), config).figures.frame.cycles;
+  };
+  CHECK(cycles(Format::kAstc4x4Unorm, 32) > cycles(Format::kAstc4x4Unorm, 1) + 1000);
+  CHECK(cycles(Format::kBc7Unorm, 32) == cycles(Format::kBc7Unorm, 1));
+}
+
 TEST_CASE("block textures: a cache of decoded lines fetches a sector of BC1 for each of its two lines") {
   // A line of 128 bytes is two decoded blocks of BC1, and a sector of 32 holds four: it comes twice.
   const Counts counts = counts_of(Format::kBc1RgbaUnorm, hw::BlocksHeld::kDecoded);
@@ -82,8 +142,10 @@ TEST_CASE("block textures: what the cache holds changes no pixel, and all laws h
                         {"texture.cache_ways", "2"},
                         {"texture.cache_misses", "1"},
                         {"texture.decode_blocks_per_clk", "1"}};
-  for (const Format format : {Format::kBc1RgbUnorm, Format::kBc3Srgb, Format::kBc4Snorm, Format::kBc5Unorm,
-                              Format::kBc6hUfloat, Format::kBc7Srgb}) {
+  for (const Format format :
+       {Format::kBc1RgbUnorm, Format::kBc3Srgb, Format::kBc4Snorm, Format::kBc5Unorm, Format::kBc6hUfloat,
+        Format::kBc7Srgb, Format::kEtc2Rgb8A1Srgb, Format::kEacR11G11Snorm, Format::kAstc4x4Unorm,
+        Format::kAstc6x5Srgb, Format::kAstc12x10Unorm}) {
     for (const char* held : {"compressed", "decoded"}) {
       Settings settings = little;
       settings.emplace_back("texture.blocks_held", held);

@@ -108,6 +108,10 @@ constexpr AskedOfBlocks kOfBlocks[] = {
     {{ViewKind::k2DArray, "texelFetch(t, ivec3(ivec2(at) & 7, int(gl_FragCoord.y) / 7), 1)"},
      Format::kBc5Unorm},
     {{ViewKind::k2D, "textureGatherOffset(t, uv, ivec2(3, -5), 1)"}, Format::kBc7Unorm},
+    {{ViewKind::k2D, "textureGatherOffset(t, uv, ivec2(3, -5), 1)"}, Format::kAstc6x5Unorm},
+    {{ViewKind::k2DArray, "texture(t, vec3(uv, at.x * 0.2 - 1.03))"}, Format::kAstc10x8Unorm},
+    {{ViewKind::kCube, "textureLod(t, dir, 1.3)"}, Format::kAstc5x5Unorm},
+    {{ViewKind::kCube, "textureLod(t, dir, 1.3)"}, Format::kEtc2Rgb8Unorm},
     {{ViewKind::k2D, "textureLodOffset(t, uv, 1.3, ivec2(-7, 5))"}, Format::kBc4Unorm},
 };
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
+#include <tuple>
 
 #include "models/texture/block/block_format.h"
 #include "scenes/image/compress.h"
@@ -65,6 +67,50 @@ TEST_CASE("compress: alpha of BC1 is 0 below the half and 1 above") {
       Format::kBc1RgbaUnorm, 64, 4, compress_texels(rgba, 64, 4, TextureCompression::kBc1));
   for (std::size_t i = 3; i < rgba.size(); i += 4)
     CHECK(static_cast<int>(decoded[i]) == (static_cast<int>(rgba[i]) >= 128 ? 255 : 0));
+}
+
+TEST_CASE("compress: ASTC has 16 bytes a block, and the larger its blocks the larger its error") {
+  const std::vector<std::byte> rgba = gradient(96, 60);
+  double before = 100;
+  for (const auto& [how, format, blocks, least] :
+       {std::tuple{TextureCompression::kAstc4x4, Format::kAstc4x4Unorm, 24 * 15, 46.0},
+        {TextureCompression::kAstc5x5, Format::kAstc5x5Unorm, 20 * 12, 44.0},
+        {TextureCompression::kAstc8x5, Format::kAstc8x5Unorm, 12 * 12, 40.0},
+        {TextureCompression::kAstc12x12, Format::kAstc12x12Unorm, 8 * 5, 36.0}}) {
+    const std::vector<std::byte> made = compress_texels(rgba, 96, 60, how);
+    CHECK(made.size() == 16 * static_cast<std::size_t>(blocks));
+    CHECK(compress_texels(rgba, 96, 60, how) == made);
+    const double found = psnr(rgba, models::decode_blocks(format, 96, 60, made), 4);
+    CHECK(found > least);
+    CHECK(found < before);
+    before = found;
+  }
+}
+
+TEST_CASE(
+    "compress: every size of blocks of ASTC has its format, of sRGB too, whatever the size of a level") {
+  for (auto c = static_cast<int>(TextureCompression::kAstc4x4);
+       c < static_cast<int>(kCompressionNames.size()); ++c) {
+    traces::CommandStream stream;
+    stream.images = {image(Format::kR8G8B8A8Srgb, 13, 7, 4), image(Format::kR8G8B8A8Unorm, 13, 7, 4)};
+    CHECK(compress_textures(stream, static_cast<TextureCompression>(c)) == 2);
+    const std::string_view name = kCompressionNames[static_cast<std::size_t>(c)];
+    const std::string size = name == "astc" ? "4x4" : std::string(name.substr(4));
+    CHECK(models::format_info(stream.images[0].format).name == "ASTC_" + size + "_SRGB_BLOCK");
+    CHECK(models::format_info(stream.images[1].format).name == "ASTC_" + size + "_UNORM_BLOCK");
+    for (const traces::Image& made : stream.images) {
+      CHECK(made.texels.size() == traces::texel_bytes(made));
+      CHECK(traces::decompressed(made).texels.size() == std::size_t{4} * (13 * 7 + 6 * 3 + 3 * 1 + 1));
+    }
+  }
+}
+
+TEST_CASE("compress: the bytes of ASTC are those of every host that this was tried on") {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const TextureCompression how : {TextureCompression::kAstc4x4, TextureCompression::kAstc6x6})
+    for (const std::byte b : compress_texels(gradient(61, 33), 61, 33, how))
+      hash = (hash ^ static_cast<std::uint64_t>(b)) * 1099511628211u;
+  CHECK(hash == 12971163480842088545u);
 }
 
 TEST_CASE("compress: textures of RGBA8 in all levels, packed or not, and nothing else") {

@@ -73,6 +73,15 @@ TEST_CASE("texture_file: DDS of one level, of pixels, and cube maps are pictures
 TEST_CASE("texture_file: KTX2 brings its levels, plain or packed by Zstandard") {
   for (const auto& [number, code] : {std::pair{133u, Code(BlockCode::kBc1Rgba)},
                                      {146u, Code(BlockCode::kBc7)},
+                                     {147u, Code(BlockCode::kEtc2Rgb8)},
+                                     {150u, Code(BlockCode::kEtc2Rgb8A1)},
+                                     {152u, Code(BlockCode::kEtc2Rgba8)},
+                                     {153u, Code(BlockCode::kEacR11Unorm)},
+                                     {156u, Code(BlockCode::kEacR11G11Snorm)},
+                                     {157u, Code(BlockCode::kAstc4x4Unorm)},
+                                     {160u, Code(BlockCode::kAstc5x4Srgb)},
+                                     {165u, Code(BlockCode::kAstc6x6Unorm)},
+                                     {184u, Code(BlockCode::kAstc12x12Srgb)},
                                      {37u, Code()},
                                      {43u, Code()}}) {
     const Bytes texels = levels_of(code, 20, 12, 5);
@@ -95,7 +104,9 @@ TEST_CASE("texture_file: what KTX2 may hold and is not supported is refused by i
   CHECK_THAT(refusal(ktx2({.vk_format = 0, .color_model = 166}, bc1, texels)), Catch::Contains("UASTC"));
   CHECK_THAT(refusal(ktx2({.vk_format = 0, .color_model = 163}, bc1, texels)), Catch::Contains("BasisLZ"));
   CHECK_THAT(refusal(ktx2({.scheme = 3}, bc1, texels)), Catch::Contains("ZLIB"));
-  CHECK_THAT(refusal(ktx2({.vk_format = 157}, bc1, texels)), Catch::Contains("VkFormat 157"));
+  CHECK_THAT(refusal(ktx2({.vk_format = 185}, bc1, texels)), Catch::Contains("VkFormat 185"));
+  constexpr std::uint32_t kAstcOfHalves = 1000066000;
+  CHECK_THAT(refusal(ktx2({.vk_format = kAstcOfHalves}, bc1, texels)), Catch::Contains("1000066000"));
   CHECK_THAT(refusal(ktx2({.faces = 6}, bc1, texels)), Catch::Contains("6 faces"));
   CHECK_THAT(refusal(ktx2({.layers = 2}, bc1, texels)), Catch::Contains("2 layers"));
 }
@@ -123,7 +134,9 @@ TEST_CASE("texture_file: sizes and levels that the files cannot have are refused
 
 TEST_CASE("texture_file: cut anywhere, or with any byte of the header changed, a file is read or refused") {
   const Bytes texels = levels_of(BlockCode::kBc1Rgba, 20, 12, 5);
+  const Bytes astc = levels_of(BlockCode::kAstc10x6Unorm, 20, 12, 5);
   const Bytes files[] = {ktx2({}, BlockCode::kBc1Rgba, texels),
+                         ktx2({.vk_format = 175}, BlockCode::kAstc10x6Unorm, astc),
                          ktx2({.scheme = 2}, BlockCode::kBc1Rgba, texels), dds("DXT1", 0, 20, 12, 5, texels),
                          dds("DX10", 71, 20, 12, 5, texels)};
   for (const Bytes& whole : files) {
@@ -156,6 +169,43 @@ TEST_CASE("texture_file: a level is the texels of its blocks, without those that
     CHECK(std::memcmp(&second.pixels[4 * (y * 9 + 8)], &block.bytes[16 * y], 4) == 0);
 }
 
+TEST_CASE("texture_file: levels of every code are decoded, whatever their size leaves of the last blocks") {
+  for (int c = 0; c <= static_cast<int>(models::kLastBlockCode); ++c) {
+    const auto code = static_cast<BlockCode>(c);
+    const models::BlockCodeInfo& info = models::block_code_info(code);
+    const TextureFile file{code, 25, 13, 5, levels_of(code, 25, 13, 5)};
+    INFO(info.name);
+    std::size_t at = 0;
+    for (std::uint32_t level = 0; level < 5; ++level) {
+      const Rgba8Image picture = decoded_level(file, level);
+      REQUIRE(picture.pixels.size() == std::size_t{4} * picture.width * picture.height);
+      if (info.decoded == models::DecodedTexels::kRgba8) {
+        models::BlockTexels block;
+        models::decode_block(code, std::span(file.bytes).subspan(at, info.bytes), block);
+        for (std::size_t y = 0; y < std::min<std::size_t>(info.height, picture.height); ++y)
+          CHECK(std::memcmp(&picture.pixels[4 * y * picture.width], &block.bytes[4 * y * info.width],
+                            4 * std::min<std::size_t>(info.width, picture.width)) == 0);
+      }
+      at += std::size_t{info.bytes} * ((picture.width + info.width - 1) / info.width) *
+            ((picture.height + info.height - 1) / info.height);
+    }
+    CHECK(at == file.bytes.size());
+  }
+}
+
+TEST_CASE("texture_file: a file of a size that its levels do not have, or of none at all, is refused") {
+  const Bytes texels = levels_of(BlockCode::kAstc8x5Unorm, 20, 12, 5);
+  for (const auto& [width, height] : {std::pair{0u, 12u}, {20u, 0u}, {0xffffffffu, 1u}, {16385u, 1u}}) {
+    Bytes file = ktx2({.vk_format = 167}, BlockCode::kAstc8x5Unorm, texels);
+    put(file, 20, width);
+    put(file, 24, height);
+    CHECK_THAT(refusal(file), Catch::Contains("legal are 1x1 to 16384x16384"));
+  }
+  Bytes file = ktx2({.vk_format = 167}, BlockCode::kAstc8x5Unorm, texels);
+  put(file, 20, 25);
+  CHECK_THAT(refusal(file), Catch::Contains("bytes where"));
+}
+
 TEST_CASE(
     "texture_file: components that a code lacks are 0, alpha 1, and numbers beyond 0 to 1 are clamped") {
   const auto texel = [](BlockCode code, const Bytes& block) {
@@ -169,6 +219,9 @@ TEST_CASE(
   CHECK(texel(BlockCode::kBc5Snorm, block) == std::array{0, 201, 0, 255});  // 200 is -56
   block.resize(8);
   CHECK(texel(BlockCode::kBc4Unorm, block) == std::array{200, 0, 0, 255});
+  // EAC: a base of 200, a multiplier of 0, and the first modifier of the first table, -3 of 2047.
+  CHECK(texel(BlockCode::kEacR11Unorm, block) == std::array{200, 0, 0, 255});
+  CHECK(texel(BlockCode::kEacR11Snorm, block) == std::array{0, 0, 0, 255});  // 200 is -56
   // BC6H in the mode of two ends of ten bits, all indices 0: red the largest half, green one half, blue zero.
   Bytes halves(16);
   put(halves, 0, 3ull | 1023ull << 5 | 462ull << 15, 8);

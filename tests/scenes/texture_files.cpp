@@ -16,7 +16,10 @@ namespace {
 
 std::size_t area_bytes(BlockCodeOrNone code, std::uint32_t width, std::uint32_t height) {
   if (!code) return std::size_t{4} * width * height;
-  return std::size_t{models::block_code_info(*code).bytes} * ((width + 3) / 4) * ((height + 3) / 4);
+  const models::BlockCodeInfo& info = models::block_code_info(*code);
+  const std::size_t columns = (width + info.width - 1) / info.width,
+                    rows = (height + info.height - 1) / info.height;
+  return info.bytes * columns * rows;
 }
 
 }  // namespace

@@ -23,16 +23,15 @@ struct LevelRows {
   }
 };
 
-std::size_t blocks_of(std::size_t texels, const TexelBlock& block) {
-  return (texels + block.side - 1) / block.side;
-}
+/// Blocks along a side of so many texels, of `along` each.
+std::size_t blocks_of(std::size_t texels, std::uint32_t along) { return (texels + along - 1) / along; }
 
 LevelRows rows_of(ImageObject& image, std::uint32_t level) {
   if (level >= image.levels) throw user_error("level {} of an image that has {}", level, image.levels);
   const TexelBlock block = texel_block(image.format);
   const auto side = [&](std::uint32_t size) { return std::size_t{std::max(1u, size >> level)}; };
-  LevelRows rows{&image.texels[level], block, blocks_of(side(image.width), block),
-                 blocks_of(side(image.height), block), side(image.depth) * image.layers};
+  LevelRows rows{&image.texels[level], block, blocks_of(side(image.width), block.width),
+                 blocks_of(side(image.height), block.height), side(image.depth) * image.layers};
   const std::size_t bytes = rows.row_bytes() * rows.rows * rows.slices;
   if (bytes > kMaxObjectBytes)
     throw user_error("an image of {} bytes a level; at most {} are possible", bytes, kMaxObjectBytes);
@@ -56,11 +55,11 @@ Box box_of(const ImageObject& image, const LevelRows& rows, const Value& part, c
   };
   const bool volume = image.type == VK_IMAGE_TYPE_3D;
   const std::size_t layers = std::min(part["layerCount"].u32(), image.layers);
-  const Box box{place(offset["x"]) / rows.block.side,
-                place(offset["y"]) / rows.block.side,
+  const Box box{place(offset["x"]) / rows.block.width,
+                place(offset["y"]) / rows.block.height,
                 volume ? place(offset["z"]) : part["baseArrayLayer"].u32(),
-                blocks_of(extent["width"].u32(), rows.block),
-                blocks_of(extent["height"].u32(), rows.block),
+                blocks_of(extent["width"].u32(), rows.block.width),
+                blocks_of(extent["height"].u32(), rows.block.height),
                 volume ? extent["depth"].u32() : layers};
   if (box.x + box.columns > rows.columns || box.y + box.rows > rows.rows ||
       box.slice + box.slices > rows.slices)
@@ -99,13 +98,13 @@ void Device::copy_to_image(Handle source, Handle target, const Value& region) {
   const Value& part = region["imageSubresource"];
   const LevelRows to = rows_of(found->second, part["mipLevel"].u32());
   const Box box = box_of(found->second, to, part, region["imageOffset"], region["imageExtent"]);
-  const auto given = [&](const char* name, std::size_t tight) {
+  const auto given = [&](const char* name, std::size_t tight, std::uint32_t along) {
     const std::uint32_t texels = region[name].u32();
-    return texels == 0 ? tight : blocks_of(texels, to.block);
+    return texels == 0 ? tight : blocks_of(texels, along);
   };
-  const std::size_t pitch = given("bufferRowLength", box.columns) * to.block.bytes,
-                    slice = given("bufferImageHeight", box.rows) * pitch, row = box.columns * to.block.bytes,
-                    begin = region["bufferOffset"].u64();
+  const std::size_t pitch = given("bufferRowLength", box.columns, to.block.width) * to.block.bytes,
+                    slice = given("bufferImageHeight", box.rows, to.block.height) * pitch,
+                    row = box.columns * to.block.bytes, begin = region["bufferOffset"].u64();
   for (std::size_t z = 0; z < box.slices; ++z)
     for (std::size_t y = 0; y < box.rows; ++y) {
       const std::size_t at = begin + z * slice + y * pitch;
@@ -124,7 +123,7 @@ void Device::copy_image(Handle source, Handle target, const Value& region) {
   const Value &from_part = region["srcSubresource"], &to_part = region["dstSubresource"];
   const LevelRows from = rows_of(from_image->second, from_part["mipLevel"].u32());
   const LevelRows to = rows_of(to_image->second, to_part["mipLevel"].u32());
-  if (from.block.bytes != to.block.bytes || from.block.side != to.block.side)
+  if (from.block != to.block)
     throw user_error("between texels of {} and {} bytes", from.block.bytes, to.block.bytes);
   const Box a = box_of(from_image->second, from, from_part, region["srcOffset"], region["extent"]);
   const Box b = box_of(to_image->second, to, to_part, region["dstOffset"], region["extent"]);

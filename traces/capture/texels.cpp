@@ -101,10 +101,11 @@ Format texture_format(const ViewObject& view) {
 }
 
 TexelBlock texel_block(std::uint32_t format) {
-  if (const OtherFormat* other = other_format(format)) return {1, other->bytes};
+  if (const OtherFormat* other = other_format(format)) return {1, 1, other->bytes};
   const Format ours = image_format(format);
   if (ours == Format::kUndefined) throw user_error("a texture of {} is not supported", format_name(format));
-  return {models::is_block_format(ours) ? models::kBlockSide : 1u, models::format_bytes(ours)};
+  const models::FormatInfo& info = models::format_info(ours);
+  return {info.block_width, info.block_height, info.bytes};
 }
 
 bool holds_part(const ImageObject& image, std::uint32_t level, std::uint32_t layer) {

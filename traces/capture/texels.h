@@ -16,10 +16,11 @@ namespace quadrille::capture {
 /// Throws `UserError` for a view that the stream cannot bring texels for.
 [[nodiscard]] traces::Format texture_format(const ViewObject& view);
 
-/// Of a format of Vulkan: texels along a side of a block, 1 without blocks, and its bytes.
+/// Of a format of Vulkan: texels along the sides of a block, 1 without blocks, and its bytes.
 struct TexelBlock {
-  std::uint32_t side = 1;
+  std::uint32_t width = 1, height = 1;
   std::size_t bytes = 0;
+  friend bool operator==(const TexelBlock&, const TexelBlock&) = default;
 };
 /// Throws `UserError` for a format that is not known.
 [[nodiscard]] TexelBlock texel_block(std::uint32_t format);

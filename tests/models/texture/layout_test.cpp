@@ -4,7 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <set>
+#include <tuple>
 #include <vector>
 
 using namespace quadrille::models;
@@ -82,4 +84,76 @@ TEST_CASE("texture layout: impossible sizes are the user's error") {
   CHECK_THROWS_AS(make_texture_layout(8, 8, 0), quadrille::UserError);
   CHECK(make_texture_layout(16384, 16384, 15).bytes < std::uint64_t{1} << 31);
   CHECK(make_texture_layout(1, 1, 1).bytes == 128);
+}
+
+TEST_CASE("texture layout: texels of blocks of every size have their own places, with those of their block") {
+  for (int f = static_cast<int>(Format::kEtc2Rgb8Unorm); f <= static_cast<int>(kLastFormat); ++f) {
+    const auto format = static_cast<Format>(f);
+    const FormatInfo& info = format_info(format);
+    INFO(info.name);
+    for (const auto& [width, height, levels] :
+         {std::tuple{1u, 1u, 1u}, {47u, 101u, 7u}, {400u, 13u, 9u}, {1u, 70u, 7u}, {12u, 12u, 4u}}) {
+      const TextureLayout layout = make_texture_layout(format, TextureExtent{width, height}, levels);
+      CHECK(layout.bytes % kLineBytes == 0);
+      std::set<std::uint32_t> texels, blocks;
+      std::size_t count = 0, block_count = 0;
+      for (std::uint32_t level = 0; level < levels; ++level) {
+        const auto w = static_cast<std::uint32_t>(layout.width[level]),
+                   h = static_cast<std::uint32_t>(layout.height[level]);
+        block_count += format_area_bytes(format, w, h) / info.bytes;
+        for (std::uint32_t y = 0; y < h; ++y) {
+          for (std::uint32_t x = 0; x < w; ++x, ++count) {
+            const std::uint32_t at = layout.texel_index(level, x, y);
+            const std::uint32_t first = layout.texel_index(level, x / info.block_width * info.block_width,
+                                                           y / info.block_height * info.block_height);
+            texels.insert(at);
+            blocks.insert(at >> layout.blocks.place_bits);
+            if (at - first != y % info.block_height * info.block_width + x % info.block_width)
+              FAIL("texel " << x << "," << y << " of level " << level);
+          }
+        }
+      }
+      CHECK(texels.size() == count);
+      CHECK(blocks.size() == block_count);
+      CHECK((std::uint64_t{*blocks.rbegin()} + 1) * info.bytes <= layout.bytes);
+    }
+  }
+}
+
+TEST_CASE("texture layout: the largest texture of blocks of any size has its chain below 2^31 places") {
+  for (int f = static_cast<int>(Format::kBc1RgbUnorm); f <= static_cast<int>(kLastFormat); ++f) {
+    const auto format = static_cast<Format>(f);
+    const std::uint64_t blocks = format_area_bytes(format, 16384, 16384) / format_bytes(format);
+    const TextureLayout layout = make_texture_layout(format, TextureExtent{16384, 16384}, 15);
+    CHECK(layout.bytes < 2 * blocks * format_bytes(format));
+  }
+}
+
+TEST_CASE("texture layout: upload puts each block where the address of its texels says") {
+  for (const Format format : {Format::kAstc5x4Unorm, Format::kAstc8x6Unorm, Format::kAstc12x12Srgb}) {
+    DeviceMemory memory;
+    (void)memory.allocate(1000);
+    const TextureView view = allocate_texture(memory, format, 50, 37, 6);
+    std::vector<std::byte> blocks;
+    std::vector<std::uint32_t> firsts;
+    for (std::uint32_t level = 0, number = 1; level < 6; ++level) {
+      firsts.push_back(number);
+      const std::uint64_t bytes =
+          format_area_bytes(format, std::max(50u >> level, 1u), std::max(37u >> level, 1u));
+      for (std::uint64_t at = 0; at < bytes; at += 16, ++number)
+        for (std::uint32_t i = 0; i < 16; ++i)
+          blocks.push_back(static_cast<std::byte>(number >> 8 * (i % 4) & 255));
+    }
+    tile_texture(memory, view, blocks);
+    const FormatInfo& info = format_info(format);
+    for (std::uint32_t level = 0; level < 6; ++level) {
+      const auto w = static_cast<std::uint32_t>(view.layout.width[level]),
+                 h = static_cast<std::uint32_t>(view.layout.height[level]);
+      const std::uint32_t columns = (w + info.block_width - 1) / info.block_width;
+      for (std::uint32_t y = 0; y < h; y += info.block_height)
+        for (std::uint32_t x = 0; x < w; x += info.block_width)
+          CHECK(memory.load<std::uint32_t>(view.texel_address(level, x, y)) ==
+                firsts[level] + y / info.block_height * columns + x / info.block_width);
+    }
+  }
 }
