@@ -30,12 +30,12 @@ struct Level {
 
 Level level_of(const ImageObject& image, const TexelBlock& block, std::uint32_t number) {
   const auto side = [&](std::uint32_t size) { return std::size_t{std::max(1u, size >> number)}; };
-  const auto blocks = [&](std::size_t texels) { return (texels + block.side - 1) / block.side; };
-  const bool compressed = block.side > 1, lines = image.type == VK_IMAGE_TYPE_1D;
+  const auto blocks = [](std::size_t texels, std::uint32_t each) { return (texels + each - 1) / each; };
+  const bool compressed = block.width > 1, lines = image.type == VK_IMAGE_TYPE_1D;
   const std::size_t width = side(image.width), height = side(image.height);
   Level level{};
-  level.row = blocks(width) * block.bytes;
-  level.rows = blocks(height);
+  level.row = blocks(width, block.width) * block.bytes;
+  level.rows = blocks(height, block.height);
   level.slices = side(image.depth) * image.layers;
   level.pitch =
       compressed ? level.row : up_to_multiple(up_to_multiple(width, kRasterBlock) * block.bytes, kCacheLine);
