@@ -219,8 +219,8 @@ TEST_CASE(
   CHECK(texel(BlockCode::kBc5Snorm, block) == std::array{0, 201, 0, 255});  // 200 is -56
   block.resize(8);
   CHECK(texel(BlockCode::kBc4Unorm, block) == std::array{200, 0, 0, 255});
-  // EAC: a base of 200, a multiplier of 0, and the first modifier of the first table, -3 of 2047.
-  CHECK(texel(BlockCode::kEacR11Unorm, block) == std::array{200, 0, 0, 255});
+  // EAC: a base of 200, a multiplier of 0, and the first modifier of the first table: 1601 of 2047.
+  CHECK(texel(BlockCode::kEacR11Unorm, block) == std::array{199, 0, 0, 255});
   CHECK(texel(BlockCode::kEacR11Snorm, block) == std::array{0, 0, 0, 255});  // 200 is -56
   // BC6H in the mode of two ends of ten bits, all indices 0: red the largest half, green one half, blue zero.
   Bytes halves(16);
