@@ -139,7 +139,7 @@ TEST_CASE("l1_cache: overwriting a sector that was written in part keeps it dirt
 namespace {
 
 /// The kinds of misses of look-ups far enough apart for lines to arrive in between, but where `at` repeats.
-std::string kinds_of(std::vector<std::pair<std::int64_t, std::uint32_t>> look_ups, Shape shape) {
+std::string kinds_of(const std::vector<std::pair<std::int64_t, std::uint32_t>>& look_ups, Shape shape) {
   std::vector<Timed<Use>> script{{0, [](User& u) { u.cache.keep_miss_kinds(); }}};
   for (const auto& [at, line] : look_ups) script.push_back({at, read(line, 0xf, line)});
   return run<ReadBench>({std::move(script), shape}, [](const ReadBench& b) {
