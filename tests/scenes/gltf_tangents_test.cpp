@@ -23,6 +23,12 @@ using namespace quadrille::scenes;
 
 namespace {
 
+/// Vertices stand in columns of two.
+float column(std::uint32_t vertex) {
+  const std::uint32_t number = vertex / 2;
+  return static_cast<float>(number);
+}
+
 constexpr std::size_t at(Semantic semantic) { return static_cast<std::size_t>(semantic); }
 
 const char* const kImage =
@@ -98,7 +104,7 @@ TEST_CASE("gltf tangents: a vertex with two becomes two, in all streams and in t
     CHECK(stream(scene, semantic).count == 10);
   const std::vector<std::uint32_t> before{0, 2, 1, 1, 2, 3, 2, 4, 3, 3, 4, 5, 4, 6, 5, 5, 6, 7};
   for (std::size_t c = 0; c < before.size(); ++c) {
-    const auto x = static_cast<float>(before[c] / 2), y = static_cast<float>(before[c] % 2);
+    const auto x = column(before[c]), y = static_cast<float>(before[c] % 2);
     CHECK(vertex_of(stream(scene, Semantic::kPosition), corners.vertices[c]) == glm::vec4(x, y, 0, 1));
     CHECK(vertex_of(stream(scene, Semantic::kColor), corners.vertices[c]) == glm::vec4(x / 4, y / 2, 0, 1));
     const float side = c < 12 ? 1.0F : -1.0F;
@@ -213,9 +219,9 @@ TEST_CASE("gltf tangents: primitives of one pool of vertices keep what they shar
   GltfBuilder b;
   std::vector<float> positions, normals, uvs;
   for (int i = 0; i < 8; ++i) {
-    positions.insert(positions.end(), {static_cast<float>(i / 2), static_cast<float>(i % 2), 0});
+    positions.insert(positions.end(), {column(static_cast<std::uint32_t>(i)), static_cast<float>(i % 2), 0});
     normals.insert(normals.end(), {0, 0, 1});
-    uvs.insert(uvs.end(), {static_cast<float>(i / 2), 1 - static_cast<float>(i % 2)});
+    uvs.insert(uvs.end(), {column(static_cast<std::uint32_t>(i)), 1 - static_cast<float>(i % 2)});
   }
   b.accessor(positions, "VEC3");
   b.accessor(normals, "VEC3");
@@ -240,7 +246,7 @@ TEST_CASE("gltf tangents: primitives of one pool of vertices keep what they shar
   const Array& points = scene.arrays[static_cast<std::size_t>(scene.primitives[2].attributes[0])];
   const std::vector<std::uint32_t> before{5, 4, 6, 5, 6, 7};
   for (std::size_t c = 0; c < before.size(); ++c)
-    CHECK(vertex_of(points, corners.vertices[c]).x == static_cast<float>(before[c] / 2));
+    CHECK(vertex_of(points, corners.vertices[c]).x == column(before[c]));
 }
 
 TEST_CASE("gltf tangents: what has too many triangles keeps a frame of its shader") {

@@ -2,8 +2,9 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 #include <random>
@@ -49,7 +50,10 @@ TangentMesh wall(std::uint32_t cells) {
   });
 }
 
-bool same(const glm::vec4& a, const glm::vec4& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
+bool same(const glm::vec4& a, const glm::vec4& b) {
+  using Bits = std::array<std::uint32_t, 4>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
 
 }  // namespace
 

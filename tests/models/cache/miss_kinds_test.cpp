@@ -118,6 +118,7 @@ TEST_CASE(
     "first misses") {
   std::mt19937 random(3);
   std::vector<std::pair<std::uint32_t, SectorMask>> looks;
+  looks.reserve(20000);
   for (int i = 0; i < 20000; ++i)  // most look-ups near where the latest were
     looks.emplace_back(static_cast<std::uint32_t>(i / 40 + static_cast<int>(random() % 60)),
                        static_cast<SectorMask>(1 + random() % 15));
