@@ -93,13 +93,17 @@ TEST_CASE("lavapipe: textures of every format have the driver's numbers with eac
 TEST_CASE("lavapipe: every operation on every kind of image has the driver's numbers") {
   VulkanRenderer* const vulkan = renderer();
   if (vulkan == nullptr) return;
+  std::size_t drawn = 0;
   for (const TextureCard& card : pipeline::test::operation_cards()) {
+    if (!vulkan->samples(card.image.format)) continue;  // which may lack is said above
+    ++drawn;
     // The weights between levels and between slices are rounded too.
     const bool exact = pipeline::test::card_tolerance(card) < 1.0 / 255.0;
     const Difference found = difference(*vulkan, card, tolerance_of(card) + (exact ? 0.0 : 1.0 / 255.0));
     INFO(pipeline::test::name_of(card) << ": by up to " << found.most << " in " << found.components);
     CHECK(found.components == 0);
   }
+  CHECK(drawn >= 100);
 }
 
 }  // namespace quadrille::lavapipe
