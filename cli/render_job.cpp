@@ -30,6 +30,18 @@ constexpr std::int64_t kMaxCycles = 1'000'000'000'000;
 constexpr double kMostFaster = 100;
 constexpr std::int64_t kMaxWindow = 1'000'000;  // cycles: far beyond what any frame gains by
 
+/// The words of --detail.
+struct DetailWord {
+  std::string_view word;
+  bool pipeline::DetailOptions::*kept;
+};
+constexpr std::array<DetailWord, 5> kDetailWords{{{"draws", &pipeline::DetailOptions::draws},
+                                                  {"tiles", &pipeline::DetailOptions::tiles},
+                                                  {"timeline", &pipeline::DetailOptions::timeline},
+                                                  {"path", &pipeline::DetailOptions::path},
+                                                  {"misses", &pipeline::DetailOptions::misses}}};
+constexpr const char* kDetailNames = "draws,tiles,timeline,path,misses";
+
 void note_host(pipeline::Figures& figures, double load_s) {
   figures.host.load_s = load_s;
   figures.host.wall_s = wall_seconds();
@@ -92,12 +104,13 @@ void RenderJob::add_to(CLI::App& command) {
               "unit and, with draws, draw by draw, as a table and in --stats (docs/why.md); misses: why "
               "texture caches missed, as a table and in --stats (docs/memory.md). "
               "Same picture, same cycles")
-          ->type_name("draws,tiles,timeline,path,misses"),
+          ->type_name(kDetailNames),
       command
           .add_option(
               "--report", report,
-              "writes all figures with the picture as a page for a browser, in one file that needs no "
-              "network (docs/report.md); --detail draws,tiles,timeline,path,misses is part of it")
+              fmt::format("writes all figures with the picture as a page for a browser, in one file that "
+                          "needs no network (docs/report.md); --detail {} is part of it",
+                          kDetailNames))
           ->type_name("F.html"),
       command
           .add_option(
@@ -179,20 +192,6 @@ std::int64_t RenderJob::window_cycles() const {
   return cycles;
 }
 
-namespace {
-
-struct DetailWord {
-  std::string_view word;
-  bool pipeline::DetailOptions::*kept;
-};
-constexpr std::array<DetailWord, 5> kDetailWords{{{"draws", &pipeline::DetailOptions::draws},
-                                                  {"tiles", &pipeline::DetailOptions::tiles},
-                                                  {"timeline", &pipeline::DetailOptions::timeline},
-                                                  {"path", &pipeline::DetailOptions::path},
-                                                  {"misses", &pipeline::DetailOptions::misses}}};
-
-}  // namespace
-
 pipeline::DetailOptions RenderJob::details() const {
   const bool page = report && !frames.wanted();  // that of several frames shows none
   pipeline::DetailOptions chosen{
@@ -203,8 +202,7 @@ pipeline::DetailOptions RenderJob::details() const {
     const std::string word = detail->substr(at, end - at);
     const auto found = std::ranges::find(kDetailWords, word, &DetailWord::word);
     if (found == kDetailWords.end())
-      throw user_error("--detail: {} not in {{draws,tiles,timeline,path,misses}}",
-                       word.empty() ? "an empty word" : word);
+      throw user_error("--detail: {} not in {{{}}}", word.empty() ? "an empty word" : word, kDetailNames);
     chosen.*found->kept = true;
     at = end + 1;
   }

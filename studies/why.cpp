@@ -69,7 +69,7 @@ std::string base_figures(const traces::CommandStream& stream, pipeline::MachineC
   for (const auto& [name, kind] : kinds)
     json["units"][name] = {{"use", kind.use}, {"busy", kind.cycles > 0 ? kind.busy / kind.cycles : 0}};
   const double clock_mhz = frame.figures.frame.clock_mhz;
-  json["path"] = Json::parse(pipeline::path_json(*frame.figures.path, clock_mhz)).at("parts");
+  json["path"] = pipeline::path_json(*frame.figures.path, clock_mhz).at("parts");
   json["path_table"] = pipeline::path_table(*frame.figures.path, clock_mhz);
   json["gains"] = Json::array();
   for (const pipeline::Gain& gain : pipeline::sensitivity(frame.figures).gains)

@@ -1,8 +1,8 @@
 /// The filter half of the texture unit: fetches the texels of a plan, decodes, weighs (sample.h).
 #include "models/rop/quad_codec.h"
-#include "models/rop/srgb.h"
 #include "models/texture/block/block_format.h"
 #include "models/texture/lanes.h"
+#include "models/texture/rgba8_filter.h"
 #include "models/texture/sample.h"
 
 #include <algorithm>
@@ -12,105 +12,6 @@
 
 namespace quadrille::models {
 namespace {
-
-/// Filtered channels of eight lanes, not yet scaled to 0..1.
-struct LaneColor {
-  __m256 channel[4];
-};
-
-struct Texels {
-  __m256i corner[4];  ///< RGBA8, red in the low byte
-  __m256i frac_x;     ///< 256ths
-  __m256 weight_y;    ///< of the lower row, 256ths
-};
-
-/// Where the texels of a plan are, and their format: those of memory, or of decoded blocks.
-struct TexelSource {
-  const std::byte* base;
-  Format format;
-  std::size_t channels;  ///< that a border colours
-};
-
-/// A border as RGBA8, which is the same with and without sRGB encoding.
-int border_code(BorderColor border, std::size_t channels) {
-  if (border == BorderColor::kOpaqueWhite) return -1;
-  return border == BorderColor::kOpaqueBlack || channels < 4 ? static_cast<int>(0xff000000u) : 0;
-}
-
-Texels fetch(const TexturePlan::Footprint& f, const TexelSource& source, BorderColor border) {
-  Texels t;
-  for (std::size_t i = 0; i < 4; ++i) {
-    t.corner[i] =
-        _mm256_i32gather_epi32(reinterpret_cast<const int*>(source.base), load_lanes(f.texel[i].data()), 4);
-  }
-  for (std::size_t i = 0; f.border != 0 && i < 4; ++i)
-    t.corner[i] = _mm256_blendv_epi8(t.corner[i], _mm256_set1_epi32(border_code(border, source.channels)),
-                                     lanes_of(f.border >> (8 * i)));
-  t.frac_x = load_lanes(f.frac_x.data());
-  t.weight_y = _mm256_cvtepi32_ps(load_lanes(f.frac_y.data()));
-  return t;
-}
-
-/// One row of the 2x2 in 256ths: red and blue, or green and alpha, as two 16-bit sums a lane. 255 * 256 fits.
-inline __m256i mix_row(__m256i left, __m256i right, __m256i weight_left, __m256i weight_right) {
-  return _mm256_add_epi16(_mm256_mullo_epi16(left, weight_left), _mm256_mullo_epi16(right, weight_right));
-}
-
-/// Codes times 65536, exact: every step is an integer below 2^24.
-LaneColor filter_unorm(const Texels& t) {
-  const __m256i low_bytes = _mm256_set1_epi32(0x00ff00ff);
-  const __m256i right = _mm256_or_si256(t.frac_x, _mm256_slli_epi32(t.frac_x, 16)),
-                left = _mm256_sub_epi16(_mm256_set1_epi16(256), right);
-  __m256i red_blue[2], green_alpha[2];
-  for (int row = 0; row < 2; ++row) {
-    const __m256i a = t.corner[2 * row], b = t.corner[2 * row + 1];
-    red_blue[row] = mix_row(_mm256_and_si256(a, low_bytes), _mm256_and_si256(b, low_bytes), left, right);
-    green_alpha[row] = mix_row(_mm256_srli_epi16(a, 8), _mm256_srli_epi16(b, 8), left, right);
-  }
-  const __m256 lower = t.weight_y, upper = _mm256_sub_ps(_mm256_set1_ps(256.0f), lower);
-  const auto mix_rows = [&](__m256i top, __m256i bottom) {
-    return _mm256_add_ps(_mm256_mul_ps(_mm256_cvtepi32_ps(top), upper),
-                         _mm256_mul_ps(_mm256_cvtepi32_ps(bottom), lower));
-  };
-  const auto low_half = [](__m256i v) { return _mm256_and_si256(v, _mm256_set1_epi32(0xffff)); };
-  const auto high_half = [](__m256i v) { return _mm256_srli_epi32(v, 16); };
-  return {{mix_rows(low_half(red_blue[0]), low_half(red_blue[1])),
-           mix_rows(low_half(green_alpha[0]), low_half(green_alpha[1])),
-           mix_rows(high_half(red_blue[0]), high_half(red_blue[1])),
-           mix_rows(high_half(green_alpha[0]), high_half(green_alpha[1]))}};
-}
-
-/// One 8-bit channel that is already in linear light and scaled to 0..1: decode, then two lerps across and
-/// one down.
-template <int shift>
-__m256 filter_srgb_channel(const Texels& t, __m256 wx, __m256 wy) {
-  __m256 value[4];
-  for (int i = 0; i < 4; ++i) {
-    const __m256i code = _mm256_and_si256(_mm256_srli_epi32(t.corner[i], shift), _mm256_set1_epi32(0xff));
-    value[i] = _mm256_i32gather_ps(kSrgbToLinear.data(), code, 4);
-  }
-  const auto lerp = [](__m256 a, __m256 b, __m256 w) {
-    return _mm256_add_ps(a, _mm256_mul_ps(_mm256_sub_ps(b, a), w));
-  };
-  return lerp(lerp(value[0], value[1], wx), lerp(value[2], value[3], wx), wy);
-}
-
-__m256 filter_unorm_alpha(const Texels& t) {
-  const auto alpha = [&](int i) { return _mm256_srli_epi32(t.corner[i], 24); };
-  const __m256i right = t.frac_x, left = _mm256_sub_epi32(_mm256_set1_epi32(256), right);
-  const __m256 lower = t.weight_y, upper = _mm256_sub_ps(_mm256_set1_ps(256.0f), lower);
-  const __m256 top = _mm256_cvtepi32_ps(mix_row(alpha(0), alpha(1), left, right));
-  const __m256 bottom = _mm256_cvtepi32_ps(mix_row(alpha(2), alpha(3), left, right));
-  return _mm256_add_ps(_mm256_mul_ps(top, upper), _mm256_mul_ps(bottom, lower));
-}
-
-/// Red, green and blue are linear 0..1, alpha is a code times 65536.
-LaneColor filter_srgb(const Texels& t) {
-  const __m256 scale = _mm256_set1_ps(1.0f / 256.0f);
-  const __m256 wx = _mm256_mul_ps(_mm256_cvtepi32_ps(t.frac_x), scale), wy = _mm256_mul_ps(t.weight_y, scale);
-  return {{filter_srgb_channel<0>(t, wx, wy), filter_srgb_channel<8>(t, wx, wy),
-           filter_srgb_channel<16>(t, wx, wy), filter_unorm_alpha(t)}};
-}
 
 /// Components of eight texels, decoded: those of lanes 0 to 3, and of the others.
 struct TexelColors {
@@ -137,15 +38,12 @@ std::uint32_t border_bits(const TexturePlan& plan, Format format, std::size_t c)
 /// Texels beyond the border: of the components that the format has.
 void put_border(std::uint32_t lanes, const TexturePlan& plan, const TexelSource& source,
                 TexelColors& colors) {
-  for (std::size_t half = 0; half < 2; ++half) {
-    const __m256i mask = lanes_of(lanes);
-    const __m128 beyond =
-        _mm_castsi128_ps(half == 0 ? _mm256_castsi256_si128(mask) : _mm256_extracti128_si256(mask, 1));
-    for (std::size_t c = 0; c < source.channels; ++c) {
-      const auto bits = static_cast<int>(border_bits(plan, source.format, c));
-      colors.half[half][c] =
-          _mm_blendv_ps(colors.half[half][c], _mm_castsi128_ps(_mm_set1_epi32(bits)), beyond);
-    }
+  const __m256 beyond = _mm256_castsi256_ps(lanes_of(lanes));
+  for (std::size_t c = 0; c < source.channels; ++c) {
+    const auto bits = static_cast<int>(border_bits(plan, source.format, c));
+    const __m128 border = _mm_castsi128_ps(_mm_set1_epi32(bits));
+    colors.half[0][c] = _mm_blendv_ps(colors.half[0][c], border, _mm256_castps256_ps128(beyond));
+    colors.half[1][c] = _mm_blendv_ps(colors.half[1][c], border, _mm256_extractf128_ps(beyond, 1));
   }
 }
 
@@ -265,8 +163,8 @@ Way way_of(const TexturePlan& plan, Format format) {
 template <Way way>
 LaneColor filter_tap(const TexturePlan& plan, std::size_t group, std::size_t tap, const TexelSource& source) {
   const TexturePlan::Footprint& footprint = plan.footprint[group][tap];
-  if constexpr (way == Way::kSrgb) return filter_srgb(fetch(footprint, source, plan.border));
-  else if constexpr (way == Way::kUnorm) return filter_unorm(fetch(footprint, source, plan.border));
+  if constexpr (way == Way::kSrgb) return filter_srgb(fetch_rgba8(footprint, source, plan.border));
+  else if constexpr (way == Way::kUnorm) return filter_unorm(fetch_rgba8(footprint, source, plan.border));
   else return filter_any(plan, group, footprint, source);
 }
 

@@ -260,13 +260,20 @@ class FrameBuilder {
     std::memcpy(to, from.data() + range.byte_offset, std::size_t{4} * range.words);
   }
 
+  /// What is bound there; null: nothing.
+  template <class T>
+  const T* bound(std::vector<T> traces::DescriptorSet::*list, std::uint32_t set,
+                 std::uint32_t binding) const {
+    const auto found = sets_.find(set);
+    if (found == sets_.end()) return nullptr;
+    const std::vector<T>& all = stream_.descriptor_sets[found->second].*list;
+    const auto one = std::ranges::find(all, binding, &T::binding);
+    return one == all.end() ? nullptr : &*one;
+  }
+
   const traces::UniformBinding& uniform(const models::Program& program, std::uint32_t set,
                                         std::uint32_t binding) {
-    if (const auto bound = sets_.find(set); bound != sets_.end()) {
-      for (const traces::UniformBinding& u : stream_.descriptor_sets[bound->second].uniforms) {
-        if (u.binding == binding) return u;
-      }
-    }
+    if (const auto* found = bound(&traces::DescriptorSet::uniforms, set, binding)) return *found;
     throw user_error("{}: no uniform buffer is bound at set {}, binding {}", program.name, set,
                      models::binding_text(binding));
   }
@@ -304,10 +311,8 @@ class FrameBuilder {
     if (use.sampler_binding == models::kNoSampler) return {};
     traces::Index index = bound.sampler;
     if (use.sampler_binding != models::kCombined) {
-      index = traces::kNone;
-      if (const auto set = sets_.find(use.sampler_set); set != sets_.end())
-        for (const traces::SamplerDescriptor& s : stream_.descriptor_sets[set->second].samplers)
-          if (s.binding == use.sampler_binding) index = s.sampler;
+      const auto* own = this->bound(&traces::DescriptorSet::samplers, use.sampler_set, use.sampler_binding);
+      index = own != nullptr ? own->sampler : traces::kNone;
     }
     if (index == traces::kNone)
       throw user_error("{}: no sampler is bound for the texture at set {}, binding {}", program.name, use.set,
@@ -323,11 +328,7 @@ class FrameBuilder {
 
   const traces::TextureDescriptor& texture(const models::Program& program, std::uint32_t set,
                                            std::uint32_t binding) {
-    if (const auto bound = sets_.find(set); bound != sets_.end()) {
-      for (const traces::TextureDescriptor& t : stream_.descriptor_sets[bound->second].textures) {
-        if (t.binding == binding) return t;
-      }
-    }
+    if (const auto* found = bound(&traces::DescriptorSet::textures, set, binding)) return *found;
     throw user_error("{}: no texture is bound at set {}, binding {}", program.name, set,
                      models::binding_text(binding));
   }

@@ -16,6 +16,8 @@
 #include "hw/base/charge_log.h"
 #include "hw/base/leg_log.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -62,10 +64,10 @@ struct CriticalPath {
 /// The parts as a table, in cycles of a clock; those that are next to nothing are left out.
 [[nodiscard]] std::string path_table(const CriticalPath& path, double clock_mhz);
 /// All of it as a JSON object, in cycles of a clock (docs/figures.md).
-[[nodiscard]] std::string path_json(const CriticalPath& path, double clock_mhz);
+[[nodiscard]] nlohmann::ordered_json path_json(const CriticalPath& path, double clock_mhz);
 
 /// The parts of a draw's own path by unit or link, without what is next to nothing: a JSON object.
-[[nodiscard]] std::string draw_path_json(const std::vector<PathShare>& parts, double clock_mhz);
+[[nodiscard]] nlohmann::ordered_json draw_path_json(const std::vector<PathShare>& parts, double clock_mhz);
 
 /// Keeps, while a machine runs, what its units' time goes to; afterwards, the path.
 class CriticalPathLog {

@@ -47,21 +47,20 @@ std::string path_table(const CriticalPath& path, double clock_mhz) {
   return text;
 }
 
-std::string path_json(const CriticalPath& path, double clock_mhz) {
+Json path_json(const CriticalPath& path, double clock_mhz) {
   Json draws = Json::array();
   for (const CriticalPath::OfDraw& draw : path.draws)
     draws.push_back({{"draw", draw.draw == hw::kNoDraw ? Json(nullptr) : Json(draw.draw.index())},
                      {"cycles", cycles(draw.ticks, clock_mhz)},
                      {"parts", parts_json(draw.parts, clock_mhz)}});
-  const Json all = {{"cycles", cycles(path.ticks, clock_mhz)},
-                    {"stretches", path.stretches},
-                    {"log_bytes", path.log_bytes},
-                    {"parts", parts_json(path.parts, clock_mhz)},
-                    {"draws", std::move(draws)}};
-  return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return {{"cycles", cycles(path.ticks, clock_mhz)},
+          {"stretches", path.stretches},
+          {"log_bytes", path.log_bytes},
+          {"parts", parts_json(path.parts, clock_mhz)},
+          {"draws", std::move(draws)}};
 }
 
-std::string draw_path_json(const std::vector<PathShare>& parts, double clock_mhz) {
+Json draw_path_json(const std::vector<PathShare>& parts, double clock_mhz) {
   hw::Tick all = 0, told = 0;
   std::map<std::string, hw::Tick> by_name;
   for (const PathShare& part : parts) {
@@ -75,7 +74,7 @@ std::string draw_path_json(const std::vector<PathShare>& parts, double clock_mhz
     told += ticks;
   }
   json["others"] = cycles(all - told, clock_mhz);
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json;
 }
 
 }  // namespace quadrille::pipeline

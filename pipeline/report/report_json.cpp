@@ -254,7 +254,7 @@ void add_detail(Json& document, const Figures& f) {
     Json draws = Json::array();
     for (std::size_t i = 0; i < detail->draws.size(); ++i) {
       draws.push_back(draw_json(*detail, detail->draws[i]));
-      if (f.path) draws.back()["path"] = Json::parse(draw_path_json(f.path->of_each[i], f.frame.clock_mhz));
+      if (f.path) draws.back()["path"] = draw_path_json(f.path->of_each[i], f.frame.clock_mhz);
     }
     document["draws"] = std::move(draws);
     document["outside_draws"] = counts_json(detail->outside_draws);
@@ -348,7 +348,7 @@ std::string report_json(const ReportSubject& s) {
                    {"limit", limit_json(f)},         {"bandwidth", std::move(bandwidth)},
                    {"links", links_json(f)},         {"checks", checks_json(f)},
                    {"left_out", std::move(left_out)}};
-  if (f.path) document["critical_path"] = Json::parse(path_json(*f.path, f.frame.clock_mhz));
+  if (f.path) document["critical_path"] = path_json(*f.path, f.frame.clock_mhz);
   add_texture_misses(document, f);
   add_queries(document, f.queries);
   add_detail(document, f);

@@ -19,6 +19,15 @@ std::set<std::string> device_extensions(VkPhysicalDevice device) {
   return names;
 }
 
+/// Which features of the structure the device has.
+template <class Structure>
+void ask(VkPhysicalDevice physical, Structure& structure) {
+  VkPhysicalDeviceFeatures2 query{};
+  query.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  query.pNext = &structure;
+  vkGetPhysicalDeviceFeatures2(physical, &query);
+}
+
 }  // namespace
 
 DeviceFeatures::DeviceFeatures(VkPhysicalDevice physical) {
@@ -44,10 +53,7 @@ DeviceFeatures::DeviceFeatures(VkPhysicalDevice physical) {
 void DeviceFeatures::add_lines(VkPhysicalDevice physical, const std::set<std::string>& present) {
   if (!present.contains(VK_EXT_LINE_RASTERIZATION_EXTENSION_NAME)) return;
   lines_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_LINE_RASTERIZATION_FEATURES_EXT;
-  VkPhysicalDeviceFeatures2 query{};
-  query.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-  query.pNext = &lines_;
-  vkGetPhysicalDeviceFeatures2(physical, &query);
+  ask(physical, lines_);
   extensions_.push_back(VK_EXT_LINE_RASTERIZATION_EXTENSION_NAME);
   line_modes_ = lines_.bresenhamLines == VK_TRUE && lines_.rectangularLines == VK_TRUE;
   if (line_modes_) link(lines_);
@@ -56,10 +62,7 @@ void DeviceFeatures::add_lines(VkPhysicalDevice physical, const std::set<std::st
 void DeviceFeatures::add_borders(VkPhysicalDevice physical, const std::set<std::string>& present) {
   if (!present.contains(VK_EXT_CUSTOM_BORDER_COLOR_EXTENSION_NAME)) return;
   borders_.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_CUSTOM_BORDER_COLOR_FEATURES_EXT;
-  VkPhysicalDeviceFeatures2 query{};
-  query.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-  query.pNext = &borders_;
-  vkGetPhysicalDeviceFeatures2(physical, &query);
+  ask(physical, borders_);
   own_borders_ = borders_.customBorderColors == VK_TRUE && borders_.customBorderColorWithoutFormat == VK_TRUE;
   if (!own_borders_) return;
   extensions_.push_back(VK_EXT_CUSTOM_BORDER_COLOR_EXTENSION_NAME);

@@ -19,14 +19,6 @@ using namespace quadrille::pipeline::test;
 
 namespace {
 
-std::string refusal(const traces::CommandStream& stream) {
-  try {
-    traces::validate(stream);
-    (void)functional_digest(stream);
-    return "";
-  } catch (const UserError& error) { return error.what(); }
-}
-
 /// The stream with another fragment shader, which samples by `declaration`.
 traces::CommandStream with_declaration(const std::string& declaration) {
   traces::CommandStream stream = descriptor_arrays_stream(1);

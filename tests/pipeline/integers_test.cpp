@@ -30,14 +30,6 @@ std::vector<std::vector<Format>> groups() {
   return all;
 }
 
-std::string refusal(const traces::CommandStream& stream) {
-  try {
-    traces::validate(stream);
-    (void)functional_digest(stream);
-    return "";
-  } catch (const UserError& error) { return error.what(); }
-}
-
 traces::CommandStream small() { return integers_stream(1, {Format::kR8G8B8A8Uint, Format::kR16Sint}); }
 
 traces::BeginPass& first_pass(traces::CommandStream& stream) {

@@ -18,14 +18,6 @@ using namespace quadrille::pipeline::test;
 
 namespace {
 
-std::string refusal(const traces::CommandStream& stream) {
-  try {
-    traces::validate(stream);
-    (void)functional_digest(stream);
-    return "";
-  } catch (const UserError& error) { return error.what(); }
-}
-
 traces::BeginPass& pass(traces::CommandStream& stream, int number) {
   for (traces::Command& command : stream.commands) {
     auto* const begin = std::get_if<traces::BeginPass>(&command);

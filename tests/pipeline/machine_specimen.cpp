@@ -91,4 +91,12 @@ std::string machine_faults(const traces::CommandStream& stream, std::uint64_t ma
                    functional_digest(stream));
 }
 
+std::string refusal(const traces::CommandStream& stream) {
+  try {
+    traces::validate(stream);
+    (void)functional_digest(stream);
+    return "";
+  } catch (const UserError& error) { return error.what(); }
+}
+
 }  // namespace quadrille::pipeline::test

@@ -15,6 +15,9 @@ namespace quadrille::pipeline::test {
 /// The same for the functional rendering of a stream.
 [[nodiscard]] std::uint64_t functional_digest(const traces::CommandStream& stream);
 
+/// What is said of a stream that is not valid, or that cannot be drawn functionally; empty if it can.
+[[nodiscard]] std::string refusal(const traces::CommandStream& stream);
+
 /// Builds the machine of `machine_seed` (0: the default one) for the stream; without `leave_out` with every
 /// unit, needed or not.
 [[nodiscard]] hw::contract::Builder machine_builder(const traces::CommandStream& stream,

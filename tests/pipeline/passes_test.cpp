@@ -21,14 +21,6 @@ traces::BeginPass& pass(traces::CommandStream& stream, int number) {
   throw std::out_of_range("no such pass");
 }
 
-std::string refusal(const traces::CommandStream& stream) {
-  try {
-    traces::validate(stream);
-    (void)functional_digest(stream);
-    return "";
-  } catch (const UserError& error) { return error.what(); }
-}
-
 /// A trace file that an earlier version of the program wrote.
 traces::CommandStream kept_file(const std::string& name) {
   return traces::read_trace(QUADRILLE_SOURCE_DIR "/tests/traces/files/" + name + ".qtrace");

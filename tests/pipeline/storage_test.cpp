@@ -29,13 +29,6 @@ std::uint64_t sum(const std::vector<std::uint32_t>& words) {
   return std::accumulate(words.begin(), words.end(), std::uint64_t{0});
 }
 
-std::string refusal(const traces::CommandStream& stream) {
-  try {
-    (void)render_functional_frame(stream, {});
-    return "";
-  } catch (const UserError& error) { return error.what(); }
-}
-
 /// Every fragment that is shaded adds one.
 StorageShape counting(const std::string& qualifier) {
   StorageShape shape;

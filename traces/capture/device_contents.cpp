@@ -12,8 +12,9 @@ namespace quadrille::capture {
 namespace {
 
 /// What lies above depths of 24 bits when they are copied is not defined: stencil values of 0.
-void clear_high_bytes(std::vector<std::byte>& depths) {
-  for (std::size_t at = 3; at < depths.size(); at += 4) depths[at] = std::byte{0};
+void clear_above_depths(std::uint32_t format, std::vector<std::byte>& texels) {
+  if (format != VK_FORMAT_D24_UNORM_S8_UINT && format != VK_FORMAT_X8_D24_UNORM_PACK32) return;
+  for (std::size_t at = 3; at < texels.size(); at += 4) texels[at] = std::byte{0};
 }
 
 }  // namespace
@@ -58,8 +59,7 @@ void Device::read_images_of(Handle memory) {
     std::vector<std::vector<std::byte>> texels =
         texels_in_memory(image, std::span(bytes).subspan(image.offset));
     if (texels.empty()) continue;
-    if (image.format == VK_FORMAT_D24_UNORM_S8_UINT || image.format == VK_FORMAT_X8_D24_UNORM_PACK32)
-      for (std::vector<std::byte>& level : texels) clear_high_bytes(level);
+    for (std::vector<std::byte>& level : texels) clear_above_depths(image.format, level);
     if (texels == image.texels) continue;
     image.texels = std::move(texels);
     image.from_memory = true;
@@ -110,8 +110,7 @@ void Device::write_image(const Block& block) {
       throw user_error("contents of image {}: level {} of {} has {} bytes where {} remain", handle, level,
                        image.levels, bytes, rest.size());
     image.texels[level].assign(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(bytes));
-    if (image.format == VK_FORMAT_D24_UNORM_S8_UINT || image.format == VK_FORMAT_X8_D24_UNORM_PACK32)
-      clear_high_bytes(image.texels[level]);
+    clear_above_depths(image.format, image.texels[level]);
     rest = rest.subspan(bytes);
   }
   ++image.writes;

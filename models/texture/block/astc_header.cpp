@@ -5,28 +5,6 @@
 namespace quadrille::models {
 namespace {
 
-/// By R, from 2 on; low precision, then high. [KDF #astc-weight-range-encodings]
-constexpr std::array<AstcRange, 12> kWeightRanges{
-    {{1, 1}, {3, 0}, {1, 2}, {5, 0}, {3, 1}, {1, 3}, {5, 1}, {3, 2}, {1, 4}, {5, 2}, {3, 3}, {1, 5}}};
-/// Of ends, the largest first.
-constexpr std::array<AstcRange, 17> kEndRanges{{{1, 8},
-                                                {3, 6},
-                                                {5, 5},
-                                                {1, 7},
-                                                {3, 5},
-                                                {5, 4},
-                                                {1, 6},
-                                                {3, 4},
-                                                {5, 3},
-                                                {1, 5},
-                                                {3, 3},
-                                                {5, 2},
-                                                {1, 4},
-                                                {3, 2},
-                                                {5, 1},
-                                                {1, 3},
-                                                {3, 1}}};
-
 /// The eleven bits of the block mode. False: reserved. [KDF #astc-2d-block-mode-layout]
 bool read_mode(int mode, AstcHeader& header) {
   const auto bits = [mode](int at, int count) { return mode >> at & ((1 << count) - 1); };
@@ -63,7 +41,8 @@ bool read_mode(int mode, AstcHeader& header) {
         else grid(10, 6);
     }
   }
-  header.weights = kWeightRanges[static_cast<std::size_t>(6 * precision + 2 * high_range + bits(4, 1) - 2)];
+  header.weights =
+      kAstcWeightRanges[static_cast<std::size_t>(6 * precision + 2 * high_range + bits(4, 1) - 2)];
   return true;
 }
 
@@ -85,8 +64,8 @@ bool choose_end_range(int bits, AstcHeader& header) {
     count += end_integers(header.end_mode[i]);
   if (count > kMaxAstcEndIntegers) return false;
   const auto* const range = std::ranges::find_if(
-      kEndRanges, [&](AstcRange candidate) { return sequence_bits(candidate, count) <= bits; });
-  if (range == kEndRanges.end()) return false;
+      kAstcEndRanges, [&](AstcRange candidate) { return sequence_bits(candidate, count) <= bits; });
+  if (range == kAstcEndRanges.end()) return false;
   header.ends = *range;
   header.end_bits = sequence_bits(*range, count);
   return true;

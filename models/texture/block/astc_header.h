@@ -14,6 +14,28 @@ inline constexpr int kMaxAstcWeights = 64;      ///< of both planes
 inline constexpr int kMaxAstcEndIntegers = 18;  ///< of all partitions
 inline constexpr std::size_t kMaxAstcPartitions = 4;
 
+/// Of weights, by R, from 2 on; low precision, then high. [KDF #astc-weight-range-encodings]
+inline constexpr std::array<AstcRange, 12> kAstcWeightRanges{
+    {{1, 1}, {3, 0}, {1, 2}, {5, 0}, {3, 1}, {1, 3}, {5, 1}, {3, 2}, {1, 4}, {5, 2}, {3, 3}, {1, 5}}};
+/// Of ends, the largest first.
+inline constexpr std::array<AstcRange, 17> kAstcEndRanges{{{1, 8},
+                                                           {3, 6},
+                                                           {5, 5},
+                                                           {1, 7},
+                                                           {3, 5},
+                                                           {5, 4},
+                                                           {1, 6},
+                                                           {3, 4},
+                                                           {5, 3},
+                                                           {1, 5},
+                                                           {3, 3},
+                                                           {5, 2},
+                                                           {1, 4},
+                                                           {3, 2},
+                                                           {5, 1},
+                                                           {1, 3},
+                                                           {3, 1}}};
+
 struct AstcHeader {
   int columns = 0, rows = 0;  ///< of the grid of weights
   bool two_planes = false;

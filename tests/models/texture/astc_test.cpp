@@ -240,23 +240,6 @@ TEST_CASE("astc: what is illegal or of high range is magenta") {
 }
 
 TEST_CASE("astc: ends of every range reach 0 and 255 and are all different, and weights 0 and 64") {
-  const std::array<AstcRange, 17> ends{{{1, 8},
-                                        {3, 6},
-                                        {5, 5},
-                                        {1, 7},
-                                        {3, 5},
-                                        {5, 4},
-                                        {1, 6},
-                                        {3, 4},
-                                        {5, 3},
-                                        {1, 5},
-                                        {3, 3},
-                                        {5, 2},
-                                        {1, 4},
-                                        {3, 2},
-                                        {5, 1},
-                                        {1, 3},
-                                        {3, 1}}};
   const auto values_of = [](AstcRange range, int (*value)(AstcRange, std::uint8_t)) {
     std::vector<int> values;
     values.reserve(static_cast<std::size_t>(range.base) << range.bits);
@@ -265,24 +248,13 @@ TEST_CASE("astc: ends of every range reach 0 and 255 and are all different, and 
     std::ranges::sort(values);
     return values;
   };
-  for (const AstcRange range : ends) {
+  for (const AstcRange range : kAstcEndRanges) {
     const std::vector<int> values = values_of(range, end_value);
     CHECK(values.front() == 0);
     CHECK(values.back() == 255);
     CHECK(std::ranges::adjacent_find(values) == values.end());
   }
-  for (const AstcRange range : std::array<AstcRange, 12>{{{1, 1},
-                                                          {3, 0},
-                                                          {1, 2},
-                                                          {5, 0},
-                                                          {3, 1},
-                                                          {1, 3},
-                                                          {5, 1},
-                                                          {3, 2},
-                                                          {1, 4},
-                                                          {5, 2},
-                                                          {3, 3},
-                                                          {1, 5}}}) {
+  for (const AstcRange range : kAstcWeightRanges) {
     const std::vector<int> values = values_of(range, weight_value);
     CHECK(values.front() == 0);
     CHECK(values.back() == 64);
