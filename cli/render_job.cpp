@@ -35,12 +35,13 @@ struct DetailWord {
   std::string_view word;
   bool pipeline::DetailOptions::*kept;
 };
-constexpr std::array<DetailWord, 5> kDetailWords{{{"draws", &pipeline::DetailOptions::draws},
+constexpr std::array<DetailWord, 6> kDetailWords{{{"draws", &pipeline::DetailOptions::draws},
                                                   {"tiles", &pipeline::DetailOptions::tiles},
                                                   {"timeline", &pipeline::DetailOptions::timeline},
                                                   {"path", &pipeline::DetailOptions::path},
-                                                  {"misses", &pipeline::DetailOptions::misses}}};
-constexpr const char* kDetailNames = "draws,tiles,timeline,path,misses";
+                                                  {"misses", &pipeline::DetailOptions::misses},
+                                                  {"textures", &pipeline::DetailOptions::textures}}};
+constexpr const char* kDetailNames = "draws,tiles,timeline,path,misses,textures";
 
 void note_host(pipeline::Figures& figures, double load_s) {
   figures.host.load_s = load_s;
@@ -102,7 +103,9 @@ void RenderJob::add_to(CLI::App& command) {
               "the screen, in --stats; timeline: use of every resource, bytes by client and how full "
               "links are over the frame, in --stats; path: what the frame's end waited for, unit by "
               "unit and, with draws, draw by draw, as a table and in --stats (docs/why.md); misses: why "
-              "texture caches missed, as a table and in --stats (docs/memory.md). "
+              "texture caches missed, as a table and in --stats (docs/memory.md); textures: with which "
+              "filters "
+              "and levels each texture was sampled, and its bytes, as a table and in --stats. "
               "Same picture, same cycles")
           ->type_name(kDetailNames),
       command
@@ -194,8 +197,12 @@ std::int64_t RenderJob::window_cycles() const {
 
 pipeline::DetailOptions RenderJob::details() const {
   const bool page = report && !frames.wanted();  // that of several frames shows none
-  pipeline::DetailOptions chosen{
-      .draws = page || timeline, .tiles = page, .timeline = page || timeline, .path = page, .misses = page};
+  pipeline::DetailOptions chosen{.draws = page || timeline,
+                                 .tiles = page,
+                                 .timeline = page || timeline,
+                                 .path = page,
+                                 .misses = page,
+                                 .textures = page};
   if (!detail) return chosen;
   for (std::size_t at = 0; at <= detail->size();) {
     const std::size_t end = std::min(detail->find(',', at), detail->size());

@@ -178,6 +178,7 @@ RenderedFrame simulate_built(DeviceFrame& frame, const std::string& scene, const
   std::optional<CriticalPathLog> charges;
   if (detail.path) charges.emplace(machine);
   if (detail.misses) keep_miss_kinds(machine);
+  if (detail.textures) keep_texture_use(machine, frame);
   build_s += seconds_since(start);
   const RunTimer timer(frame.fills);
   if (watch.begin) watch.begin(machine);
@@ -192,6 +193,7 @@ RenderedFrame simulate_built(DeviceFrame& frame, const std::string& scene, const
   if (flow) flow->collect(out.figures);
   if (charges) add_path(charges->follow(detail.draws), machine, out.figures);
   if (detail.misses) collect_miss_kinds(machine, out.figures);
+  if (detail.textures) collect_texture_use(machine, frame, out.figures);
   out.figures.report_timeline = detail.timeline;
   host.actions = out.figures.host.actions;
   out.figures.host = host;
@@ -214,7 +216,7 @@ RenderedFrame simulate(const traces::CommandStream& stream, const MachineConfig&
                        KeptCounters* kept, const RunWatch& watch = {}) {
   const auto start = Clock::now();
   DeviceFrame frame(memory_bytes_of(config));
-  build_frame(stream, config.precision(), frame, options.leave_out, config.shader_target());
+  build_frame(stream, config.precision(), frame, options.leave_out, config.frame_target());
   const double build_s = seconds_since(start) - frame.fills.seconds();
   return simulate_built(frame, stream.name, config, options, limits, detail, kept, build_s, watch);
 }
@@ -246,7 +248,7 @@ RenderedFrame render_exact_with_waves(const traces::CommandStream& stream, const
 
 PreparedFrame::PreparedFrame(const traces::CommandStream& stream, const MachineConfig& config)
     : stream_(stream), needs_(needs(config)), frame_(std::make_unique<DeviceFrame>(memory_bytes_of(config))) {
-  build_frame(stream, config.precision(), *frame_, true, config.shader_target());
+  build_frame(stream, config.precision(), *frame_, true, config.frame_target());
   for (const hw::DrawState& draw : frame_->frame.draws)
     for (const hw::ProgramState* program : {&draw.vertex, &draw.fragment})
       for (const hw::TextureState& texture : program->textures)
@@ -258,8 +260,9 @@ PreparedFrame::~PreparedFrame() = default;
 std::string PreparedFrame::needs(const MachineConfig& config) {
   const models::Precision p = config.precision();
   const ShaderTarget t = config.shader_target();
-  std::string text = fmt::format("{} {} {} {} {} {} {}", config.gpu.memory_mib.value(), p.subpixel_bits,
-                                 p.subtexel_bits, p.lod_bits, p.linear_log2, t.warp_slots, t.register_rows);
+  std::string text = fmt::format("{} {} {} {} {} {} {} {} {}", config.gpu.memory_mib.value(), p.subpixel_bits,
+                                 p.subtexel_bits, p.lod_bits, p.linear_log2, p.ellipse_axis, t.warp_slots,
+                                 t.register_rows, static_cast<int>(config.texture.layout.value()));
   for (const models::IssueTiming::Class& c : t.timing.classes)
     text += fmt::format(" {}/{}", c.issue, c.latency);
   return text;

@@ -50,6 +50,7 @@ struct TextureState {
   models::TextureView view;
   models::SamplerState sampler;
   models::TextureFill* fill = nullptr;  ///< null: the texels lie in device memory
+  std::uint32_t texture = 0;            ///< of the images that the frame samples, for figures
   /// Call it between `plan_texture` and `filter_texture`.
   void need_texels(const models::TexturePlan& plan) const {
     if (fill != nullptr && plan.line_count > 0) fill->need();

@@ -1,5 +1,6 @@
 #include "hw/memory/l1_cache.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace quadrille::hw {
@@ -33,6 +34,13 @@ L1Cache::L1Cache(StatGroup& stats, int lines, int ways, int misses,
       group_(stats),
       stats_(stats) {}
 
+std::uint8_t L1Cache::groups_of(std::uint8_t sectors) const {
+  if (group_sectors_ == 1) return sectors;
+  if (group_sectors_ == 4) return kAllSectors;
+  const unsigned pairs = (sectors | sectors >> 1) & 0b0101u;
+  return static_cast<std::uint8_t>(pairs | pairs << 1);
+}
+
 void L1Cache::note_kind(std::uint32_t line, std::uint8_t sectors, std::uint8_t brought, bool missed) {
   const models::MissKind kind = kinds_->ideal.look_up(line, sectors, brought);
   if (kind != models::MissKind::kConflict) ++kinds_->counts.associative_misses;
@@ -51,9 +59,11 @@ L1Cache::Result L1Cache::access(std::uint32_t line, std::uint8_t sectors, std::u
                                 MemoryPort& port) {
   const int slot = tags_.lookup(line);
   const bool there = slot != models::TagArray::kNone && (tags_.at(slot).valid & sectors) == sectors;
-  if (there && kinds_ == nullptr) return hit(line, sectors, sectors);
+  if (there && !used_.empty()) note_used(slot, sectors);
+  const std::uint8_t brought = groups_of(sectors);
+  if (there && kinds_ == nullptr) return hit(line, sectors, brought);
   if (stored_lines_ == nullptr || !stored_lines_->is_encoded(line))
-    return there ? hit(line, sectors, sectors) : ask(slot, line, sectors, sectors, waiter, port, nullptr);
+    return there ? hit(line, sectors, brought) : ask(slot, line, sectors, brought, waiter, port, nullptr);
   if (there) return hit(line, sectors, kAllSectors);
   const models::StoredLines::Place place = stored_lines_->place_of(line);
   const std::uint64_t misses = stats_.misses.value();
@@ -67,8 +77,10 @@ L1Cache::Result L1Cache::access(std::uint32_t line, std::uint8_t sectors, std::u
 L1Cache::Result L1Cache::access_made(std::uint32_t line, const models::StoredLines::Place& from,
                                      std::uint32_t waiter, MemoryPort& port) {
   const int slot = tags_.lookup(line);
-  if (slot != models::TagArray::kNone && tags_.at(slot).valid == kAllSectors)
+  if (slot != models::TagArray::kNone && tags_.at(slot).valid == kAllSectors) {
+    if (!used_.empty()) note_used(slot, kAllSectors);
     return hit(line, kAllSectors, kAllSectors);
+  }
   return ask(slot, line, kAllSectors, kAllSectors, waiter, port, &from);
 }
 
@@ -81,6 +93,10 @@ L1Cache::Result L1Cache::ask(int slot, std::uint32_t line, std::uint8_t sectors,
   ++(asked->missing != 0 ? stats_.misses : stats_.merged);
   if (kinds_ != nullptr) [[unlikely]]
     note_kind(line, sectors, brought, asked->missing != 0);
+  if (!used_.empty()) {
+    sector_stats_->filled += static_cast<std::uint64_t>(std::popcount(asked->missing));
+    note_used(misses_.slot_of(asked->tag), sectors);
+  }
   if (asked->missing != 0) fetch(line, asked->missing, asked->tag, port, whole_from);
   misses_.wait(asked->tag, waiter);
   return Result::kPending;
@@ -101,6 +117,7 @@ std::uint8_t L1Cache::arrived(const MemoryResponse& response) {
 
 int L1Cache::place(std::uint32_t line, MemoryPort& port) {
   const models::TagArray::Allocation got = tags_.allocate(line);
+  if (got.slot != models::TagArray::kNone && !used_.empty()) used_[static_cast<std::size_t>(got.slot)] = 0;
   if (got.slot == models::TagArray::kNone || parts_.empty()) return got.slot;
   write_back(got.slot, {got.victim.line, got.victim.dirty, got.victim.present}, port);
   return got.slot;
@@ -169,6 +186,7 @@ void L1Cache::forget() {
   QUADRILLE_CHECK(idle() && parts_.empty(), "a cache is emptied with {} misses under way",
                   misses_.under_way());
   tags_.invalidate_all();
+  std::ranges::fill(used_, std::uint8_t{0});
   if (kinds_ != nullptr) kinds_->ideal.forget();
 }
 

@@ -25,6 +25,7 @@
 #include "models/memory/device_memory.h"
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -50,6 +51,15 @@ struct EncodedReadStats {
       : lines{group, "encoded_reads", "line", "Lines fetched by their encodings"},
         bytes{group, "encoded_read_bytes", "byte", "Bytes that those moved"} {}
   Counter lines, bytes;
+};
+
+/// Of a cache that fetches sectors in groups.
+struct SectorStats {
+  explicit SectorStats(StatGroup& group)
+      : filled{group, "sectors_filled", "sector", "Sectors of 32 bytes that were fetched"},
+        used{group, "sectors_used", "sector",
+             "Those of them that some look-up asked for, each once for every time it is fetched"} {}
+  Counter filled, used;
 };
 
 /// Look-ups of a cache by what its ideal companions say of them.
@@ -94,6 +104,13 @@ class L1Cache {
     stored_lines_ = &lines;
     read_stats_ = &stats;
     expands_.assign(misses_.size(), false);
+  }
+  /// From here on sectors are fetched in aligned groups of so many (1, 2 or 4), and what is used of them is
+  /// counted. Of a cache that only reads.
+  void fetch_groups(int sectors, SectorStats& stats) {
+    group_sectors_ = sectors;
+    sector_stats_ = &stats;
+    used_.assign(static_cast<std::size_t>(tags_.slots()), 0);
   }
   /// From here on `store` decides what is written of lines that leave.
   void store_through(Store& store) { store_ = &store; }
@@ -171,6 +188,15 @@ class L1Cache {
   /// The sectors that an answer brings: all of the line if its encoding was asked for.
   [[nodiscard]] std::uint8_t arrived(const MemoryResponse& response);
   void note_writer(int slot);
+  /// The groups that these sectors lie in.
+  [[nodiscard]] std::uint8_t groups_of(std::uint8_t sectors) const;
+  void note_used(int slot, std::uint8_t sectors) {
+    std::uint8_t& used = used_[static_cast<std::size_t>(slot)];
+    const auto fresh = static_cast<std::uint8_t>(sectors & ~used);
+    if (fresh == 0) return;
+    used |= fresh;
+    sector_stats_->used += static_cast<std::uint64_t>(std::popcount(fresh));
+  }
 
   models::TagArray tags_;
   models::MissTable<std::uint32_t> misses_;
@@ -183,9 +209,12 @@ class L1Cache {
   std::vector<std::uint32_t> parts_;
   const models::StoredLines* stored_lines_ = nullptr;  ///< null: all lines are plain
   EncodedReadStats* read_stats_ = nullptr;
-  Store* store_ = nullptr;        ///< null: dirty sectors are written
-  std::vector<bool> expands_;     ///< by tag: what was asked for is the line's encoding
-  std::unique_ptr<Kinds> kinds_;  ///< null: nobody asks for kinds of misses
+  Store* store_ = nullptr;  ///< null: dirty sectors are written
+  int group_sectors_ = 1;
+  SectorStats* sector_stats_ = nullptr;  ///< null: what is used of sectors is not counted
+  std::vector<std::uint8_t> used_;       ///< by slot: sectors that were asked for; empty if it is not counted
+  std::vector<bool> expands_;            ///< by tag: what was asked for is the line's encoding
+  std::unique_ptr<Kinds> kinds_;         ///< null: nobody asks for kinds of misses
   L1CacheStats stats_;
 };
 

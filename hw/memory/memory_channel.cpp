@@ -185,6 +185,8 @@ void MemoryChannel::take(Tick now, std::int64_t cycle) {
   note_occupancy(cycle);
   ++(write ? stats_->writes : stats_->reads);
   if (!write) stats_->read_bytes += bytes;
+  if (texture_lines_ && !write && request.client == MemoryClient::kTexture) [[unlikely]]
+    (*texture_lines_)[request.line] += bytes;
   stats_->bytes(write ? MemoryClient::kWriteBack : request.client) += bytes;
   if (free_ids_.empty()) {
     free_ids_.push_back(static_cast<std::uint32_t>(held_.size()));

@@ -16,6 +16,7 @@
 
 #include <array>
 #include <optional>
+#include <unordered_map>
 
 namespace quadrille::hw {
 
@@ -38,6 +39,12 @@ class MemoryChannel final : public Unit {
   [[nodiscard]] const StatGroup* stats() const override;
   /// What it moved on a client's behalf: bytes read, but of write-backs those written.
   [[nodiscard]] const Counter& bytes_of(MemoryClient client) const;
+  /// Bytes that are read for texture units are counted by line too, from here on. Before the run.
+  void keep_texture_lines() { texture_lines_.emplace(); }
+  /// By line; none unless they are kept.
+  [[nodiscard]] const std::optional<std::unordered_map<std::uint32_t, std::uint64_t>>& texture_lines() const {
+    return texture_lines_;
+  }
   void audit(Audit& audit) const override;
   void details(Details& details) const override;
   [[nodiscard]] std::vector<Facet> row() const override;
@@ -70,6 +77,7 @@ class MemoryChannel final : public Unit {
 
   const Params& params_;
   models::Interleave interleave_;
+  std::optional<std::unordered_map<std::uint32_t, std::uint64_t>> texture_lines_;
   std::unique_ptr<Stats> stats_;
   models::DramController controller_;
   std::vector<Held> held_;  ///< by the id of the request

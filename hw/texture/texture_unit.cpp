@@ -5,6 +5,7 @@
 #include "hw/frame/laws.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 
 namespace quadrille::hw {
@@ -26,8 +27,10 @@ TextureUnit::TextureUnit(sc_core::sc_module_name name, const UnitContext& contex
       slots_(slots),
       port_(*this, stats_, context.machine.channels),
       cache_(stats_, params.cache_lines, params.cache_ways, params.cache_misses, params.replacement.value()),
-      encoded_(stats_) {
+      encoded_(stats_),
+      sectors_(stats_) {
   cache_.read_encoded(device_.stored_lines(), encoded_);
+  cache_.fetch_groups(1 << static_cast<int>(params.fetched_sectors.value()), sectors_);
   add_initiation_rate("address");
   add_rate("filter", [this] {
     return static_cast<double>(stats_.bilinear_quads.value()) / params_.filter_quads_per_clk;
@@ -83,6 +86,8 @@ void TextureUnit::act(Tick now) {
     if (leg_log() != nullptr) [[unlikely]]
       note_leg(now);
     response_out.push(now, groups_.front().token);
+    stats_.latency.note(static_cast<std::uint64_t>(clock().edges_before(now) -
+                                                   clock().edges_before(groups_.front().arrived)));
     filter_free_ = after(std::max(groups_.front().ready, filter_free_), groups_.front().filter_cycles);
     groups_.pop_front();
     ++stats_.groups_answered;
@@ -106,29 +111,47 @@ void TextureUnit::plan(CoreSlot& slot, const TextureToken& token, Group& group,
     // Values are the same whenever they are computed: textures do not change within a pass. Only presence in
     // the cache takes time.
     models::filter_texture(plan_, device_, slot.texels[static_cast<std::size_t>(i)]);
-    add_look_ups(group);
+    add_look_ups(group, texture.texture);
+    if (use_) [[unlikely]]
+      use_->note(texture.texture, texture.sampler, plan_);
     quads += plan_.bilinear_quads;
     ++stats_.requests;
     stats_.lanes += static_cast<std::uint64_t>(std::popcount(request.active));
     stats_.bilinear_quads += plan_.bilinear_quads;
     stats_.texels += plan_.texels;
   }
-  address_cycles = std::max({std::int64_t{1}, cycles_of(quads, params_.address_quads_per_clk),
-                             cycles_of(lines_.size(), params_.tags_per_clk)});
+  address_cycles = std::max({std::int64_t{1}, cycles_of(quads, params_.address_quads_per_clk), tag_cycles()});
   group.filter_cycles =
       std::max({std::int64_t{1}, group.filter_cycles, cycles_of(quads, params_.filter_quads_per_clk)});
 }
 
-void TextureUnit::add_look_ups(Group& group) {
+std::int64_t TextureUnit::tag_cycles() {
+  const std::int64_t without_banks = cycles_of(lines_.size(), params_.tags_per_clk);
+  const auto banks = static_cast<std::size_t>(params_.tag_banks.value());
+  if (banks == 1) return without_banks;
+  std::array<std::size_t, 64> in_bank{};
+  for (const LookUp& look_up : lines_) {
+    const std::uint32_t line = look_up.decoded.blocks == 0 ? look_up.line.line : look_up.decoded.line;
+    // Lines of a tile are four in a row: 2x2 of them are neighbours.
+    ++in_bank[(line + 2 * (line / 4)) % banks];
+  }
+  const std::size_t fullest = *std::ranges::max_element(in_bank);
+  const int each = std::max(1, params_.tags_per_clk / params_.tag_banks);
+  const std::int64_t cycles = std::max(without_banks, cycles_of(fullest, each));
+  stats_.bank_conflict_clk += static_cast<std::uint64_t>(cycles - without_banks);
+  return cycles;
+}
+
+void TextureUnit::add_look_ups(Group& group, std::uint32_t texture) {
   if (plan_.block_count == 0 || params_.blocks_held.value() == BlocksHeld::kCompressed) {
     for (int i = 0; i < plan_.line_count; ++i)
-      lines_.push_back({plan_.lines[static_cast<std::size_t>(i)], {}, plan_.format});
+      lines_.push_back({plan_.lines[static_cast<std::size_t>(i)], {}, plan_.format, texture});
     decode(group, static_cast<std::uint32_t>(plan_.block_count), plan_.format);
     return;
   }
   decoded_lines_.clear();
   models::add_decoded_lines(plan_, decoded_lines_);
-  for (const models::DecodedLine& line : decoded_lines_) lines_.push_back({{}, line, plan_.format});
+  for (const models::DecodedLine& line : decoded_lines_) lines_.push_back({{}, line, plan_.format, texture});
 }
 
 void TextureUnit::decode(Group& group, std::uint32_t blocks, models::Format format) {
@@ -156,6 +179,15 @@ L1Cache::Result TextureUnit::access(const LookUp& line) {
   return result;
 }
 
+L1Cache::Result TextureUnit::access_for_use(const LookUp& line) {
+  const std::uint64_t misses = cache_.stats().misses.value(), bytes = port_.stats().read_bytes.value();
+  const L1Cache::Result result = access(line);
+  if (result != L1Cache::Result::kStall)
+    use_->note_look_up(line.texture, cache_.stats().misses.value() != misses,
+                       port_.stats().read_bytes.value() - bytes);
+  return result;
+}
+
 void TextureUnit::begin_pass(PassId pass) {
   if (pass == pass_) return;
   pass_ = pass;
@@ -179,6 +211,7 @@ void TextureUnit::take(Tick now) {
   lines_.clear();
   next_line_ = 0;
   Group group{token};
+  group.arrived = arrived;
   group.leg_take = noted(leg_log(), {arrived, now, request_in.number(), true, token.draw});
   std::int64_t address_cycles = 0;
   plan(slots_[token.slot], token, group, address_cycles);
@@ -192,7 +225,8 @@ void TextureUnit::take(Tick now) {
 
 void TextureUnit::look_up(Tick now) {
   for (; next_line_ < lines_.size(); ++next_line_) {
-    switch (access(lines_[next_line_])) {
+    const LookUp& next = lines_[next_line_];
+    switch (use_ ? access_for_use(next) : access(next)) {
       case L1Cache::Result::kHit: break;
       case L1Cache::Result::kPending: ++groups_.back().missing; break;
       case L1Cache::Result::kStall: stalled_ = true; return;

@@ -18,8 +18,12 @@
 #include "hw/memory/l1_cache.h"
 #include "hw/memory/memory_port.h"
 #include "hw/shader/core_slots.h"
+#include "hw/texture/texture_use.h"
 
 namespace quadrille::hw {
+
+/// Of what a miss fetches: `texture.fetched_sectors`.
+enum class FetchedSectors : std::uint8_t { kOne, kTwo, kLine };
 
 /// What lines of compressed textures the first-level cache holds.
 enum class BlocksHeld : std::uint8_t {
@@ -38,6 +42,15 @@ class TextureUnit final : public Unit {
                                     {1, 64}, "Bilinear quads filtered a cycle. [G: 8 texels x 4 channels]"};
     Param<int> tags_per_clk{*this,      "tags_per_clk", 4,
                             "line/clk", {1, 64},        "Distinct lines looked up a cycle. [G: 4 tag banks]"};
+    Param<int> tag_banks{
+        *this,
+        "tag_banks",
+        1,
+        "bank",
+        {1, 64},
+        "Banks of the tags, which share `tags_per_clk` evenly; 2x2 neighbouring lines of tiled "
+        "textures lie in four. One bank: any lines go together. [P: Hakura 1997]",
+        Effect::kTradeOff};
     Param<int> filter_clk{*this,
                           "filter_clk",
                           8,
@@ -57,11 +70,27 @@ class TextureUnit final : public Unit {
                           {1, 64},
                           "Associativity of the first-level cache. [G]",
                           Effect::kTradeOff};
+    Choice<models::Tiling> layout{*this,
+                                  "layout",
+                                  models::Tiling::kTiled,
+                                  {"tiled", "linear", "morton", "williams"},
+                                  "Where the driver puts the texels of a texture: tiles of 32x32 that hold "
+                                  "the lines of neighbours, rows, "
+                                  "Morton order, or Williams' pyramid, whose components lie apart (colours "
+                                  "of 4x8 bits; else tiled). [G: "
+                                  "GPUs tile; P: Williams 1983]"};
     PolicyParam<models::ReplacementPolicy> replacement{
         *this, "replacement", models::replacement_policies(), models::kLruReplacement,
         "Which line of a full set makes room. [G: as caches are modelled]"};
     Param<int> cache_misses{*this,  "cache_misses", 64,
                             "line", {1, 4096},      "Lines under way. [G: bandwidth times latency]"};
+    Choice<FetchedSectors> fetched_sectors{
+        *this,
+        "fetched_sectors",
+        FetchedSectors::kOne,
+        {"one", "two", "line"},
+        "Sectors of 32 bytes that a miss fetches beside those that were asked for: none, the other one of a "
+        "pair, or all of the line. [G: sectored caches]"};
     Choice<BlocksHeld> blocks_held{
         *this,
         "blocks_held",
@@ -89,6 +118,8 @@ class TextureUnit final : public Unit {
         Effect::kSlower};
   };
   struct Stats : StatGroup {
+    Histogram latency{*this, "latency", "clk",
+                      "Cycles from the arrival of a group of requests to its answer"};
     Counter groups{*this, "groups", "group", "Clauses' request groups taken in"};
     Counter requests{*this, "requests", "request", "Warp texture instructions"};
     Counter lanes{*this, "lanes", "lane", "Lanes that sampled"};
@@ -104,12 +135,15 @@ class TextureUnit final : public Unit {
     Counter decode_slots{
         *this, "decode_slots", "slot",
         "Places of the decoder that these took: `astc_decode_slots` a block of ASTC, else one"};
+    Counter bank_conflict_clk{
+        *this, "bank_conflict_clk", "clk",
+        "Cycles by which look-ups of groups took longer because their lines met in banks of the tags"};
     Counter cache_emptied{
         *this, "cache_emptied", "time",
         "Times that the cache forgot all lines, since a pass samples what earlier ones drew"};
     Counter groups_answered{*this, "groups_answered", "group", "Groups whose texels went back"};
   };
-  using CounterParts = Parts<MemoryPortStats, L1CacheStats, EncodedReadStats>;
+  using CounterParts = Parts<MemoryPortStats, L1CacheStats, EncodedReadStats, SectorStats>;
   TextureUnit(sc_core::sc_module_name name, const UnitContext& context, const Params& params,
               Store<CoreSlot>& slots);
 
@@ -129,6 +163,12 @@ class TextureUnit final : public Unit {
   /// Null unless it is kept.
   [[nodiscard]] const MissKindCounts* miss_kinds() const { return cache_.miss_kinds(); }
   [[nodiscard]] const L1CacheStats& cache_stats() const { return cache_.stats(); }
+  [[nodiscard]] const MemoryPortStats& port_stats() const { return port_.stats(); }
+  [[nodiscard]] const Counter& lanes() const { return stats_.lanes; }
+  /// What is asked of each of so many textures is counted from here on. Before the run.
+  void keep_use(std::size_t textures) { use_.emplace(textures); }
+  /// Null unless it is kept.
+  [[nodiscard]] const TextureUseLog* use() const { return use_ ? &*use_ : nullptr; }
   static constexpr MemoryClient kMemoryClient = MemoryClient::kTexture;
 
  private:
@@ -137,7 +177,7 @@ class TextureUnit final : public Unit {
     int missing = 0;                 ///< look-ups not complete
     std::int64_t filter_cycles = 0;  ///< of the filter, or of the decoder beside it if that takes longer
     std::uint32_t decode_slots = 0;  ///< of the decoder
-    Tick ready = 0;
+    Tick arrived = 0, ready = 0;
     std::uint32_t leg_take = 0;  ///< for a log of legs: of its request, or of the latest answer it waited for
   };
   /// A line of memory, or one of decoded texels: then `decoded.blocks` is not 0.
@@ -145,6 +185,7 @@ class TextureUnit final : public Unit {
     models::TextureLine line{};
     models::DecodedLine decoded{};
     models::Format format = models::Format::kUndefined;  ///< of the texture, where `decoded` counts
+    std::uint32_t texture = 0;                           ///< `TextureState::texture`
   };
   [[nodiscard]] Wake address_wake() const;
   [[nodiscard]] Wake answer_wake() const;
@@ -155,9 +196,13 @@ class TextureUnit final : public Unit {
   [[nodiscard]] Tick answered_at(const Group& head) const;
   void plan(CoreSlot& slot, const TextureToken& token, Group& group, std::int64_t& address_cycles);
   void look_up(Tick now);
-  void add_look_ups(Group& group);
+  void add_look_ups(Group& group, std::uint32_t texture);
+  /// Cycles that the tags take for the newest group's look-ups.
+  [[nodiscard]] std::int64_t tag_cycles();
   void decode(Group& group, std::uint32_t blocks, models::Format format);
   [[nodiscard]] L1Cache::Result access(const LookUp& line);
+  /// The same, and notes for which texture.
+  [[nodiscard]] L1Cache::Result access_for_use(const LookUp& line);
 
   const Params& params_;
   const Frame& frame_;
@@ -167,6 +212,8 @@ class TextureUnit final : public Unit {
   MemoryPort port_;
   L1Cache cache_;
   EncodedReadStats encoded_;
+  SectorStats sectors_;
+  std::optional<TextureUseLog> use_;
   PassId pass_;  ///< of the latest request
   models::TexturePlan plan_;
   WaitingQueue<Group> groups_;

@@ -106,46 +106,82 @@ inline __m256i texture_row_in_tile(__m256i y) {
   return _mm256_or_si256(low, _mm256_slli_epi32(field(28), 5));
 }
 
-/// The parts of a texel's index that x and y contribute (TextureLayout::texel_index).
-inline __m256i x_index(__m256i x, const TextureLayout& layout) {
+/// The part of a column in Morton order, in squares of a side of 2^`bits`. Of a row, which has the odd bits,
+/// `shift` is 1.
+inline __m256i morton_part(__m256i v, __m256i bits, int shift) {
+  const auto spread = [](__m256i u, int by, int mask) {
+    return _mm256_and_si256(_mm256_or_si256(u, _mm256_slli_epi32(u, by)), _mm256_set1_epi32(mask));
+  };
+  const __m256i beyond = _mm256_srlv_epi32(v, bits);
+  const __m256i within = _mm256_sub_epi32(v, _mm256_sllv_epi32(beyond, bits));
+  const __m256i spread_by_two = spread(spread(spread(within, 8, 0x00ff00ff), 4, 0x0f0f0f0f), 2, 0x33333333);
+  const __m256i alternate = _mm256_slli_epi32(spread(spread_by_two, 1, 0x55555555), shift);
+  return _mm256_add_epi32(alternate, _mm256_sllv_epi32(beyond, _mm256_add_epi32(bits, bits)));
+}
+
+/// The parts of a texel's or a block's index that its column and its row contribute
+/// (TextureLayout::unit_index).
+inline __m256i column_index(__m256i x, __m256i pitch, const TextureLayout& layout) {
   switch (layout.tiling) {
-    case Tiling::kTexture: break;
+    case Tiling::kTiled: break;
+    case Tiling::kLinear:
+    case Tiling::kWilliams: return x;
+    case Tiling::kMorton: return morton_part(x, pitch, 0);
     case Tiling::kSurface: {
       const auto field = [x](int mask) { return _mm256_and_si256(x, _mm256_set1_epi32(mask)); };
       const __m256i low = _mm256_or_si256(field(1), _mm256_slli_epi32(field(6), 1));
       return _mm256_or_si256(low, _mm256_slli_epi32(_mm256_srli_epi32(x, 3), layout.tile_shift));
     }
-    case Tiling::kBlocks: {
-      const BlockPlaces& blocks = layout.blocks;
-      const __m256i column = blocks_before(x, blocks.width);
-      const __m256i in_block =
-          _mm256_sub_epi32(x, _mm256_mullo_epi32(column, _mm256_set1_epi32(static_cast<int>(blocks.width))));
-      return _mm256_add_epi32(in_block, _mm256_slli_epi32(texture_column(column), blocks.place_bits));
-    }
   }
   return texture_column(x);
 }
-inline __m256i y_index(__m256i y, __m256i pitch, const TextureLayout& layout) {
+inline __m256i row_index(__m256i y, __m256i pitch, const TextureLayout& layout) {
   switch (layout.tiling) {
-    case Tiling::kTexture: break;
+    case Tiling::kTiled: break;
+    case Tiling::kLinear:
+    case Tiling::kWilliams: return _mm256_mullo_epi32(y, pitch);
+    case Tiling::kMorton: return morton_part(y, pitch, 1);
     case Tiling::kSurface: {
       const auto field = [y](int mask) { return _mm256_and_si256(y, _mm256_set1_epi32(mask)); };
       const __m256i low = _mm256_or_si256(_mm256_slli_epi32(field(1), 1), _mm256_slli_epi32(field(6), 3));
       return _mm256_add_epi32(low, _mm256_mullo_epi32(_mm256_srli_epi32(y, 3), pitch));
     }
-    case Tiling::kBlocks: {
-      const BlockPlaces& blocks = layout.blocks;
-      const auto times = [](__m256i v, std::uint32_t factor) {
-        return _mm256_mullo_epi32(v, _mm256_set1_epi32(static_cast<int>(factor)));
-      };
-      const __m256i row = blocks_before(y, blocks.height);
-      const __m256i in_block = times(_mm256_sub_epi32(y, times(row, blocks.height)), blocks.width);
-      const __m256i in_tile = _mm256_slli_epi32(texture_row_in_tile(row), blocks.place_bits);
-      return _mm256_add_epi32(_mm256_add_epi32(in_block, in_tile),
-                              _mm256_mullo_epi32(_mm256_srli_epi32(row, 5), pitch));
-    }
   }
   return _mm256_add_epi32(texture_row_in_tile(y), _mm256_mullo_epi32(_mm256_srli_epi32(y, 5), pitch));
+}
+
+/// The parts of a texel's index that x and y contribute (TextureLayout::texel_index).
+inline __m256i x_index(__m256i x, __m256i pitch, const TextureLayout& layout) {
+  if (!layout.in_blocks()) return column_index(x, pitch, layout);
+  const BlockPlaces& blocks = layout.blocks;
+  const __m256i column = blocks_before(x, blocks.width);
+  const __m256i in_block =
+      _mm256_sub_epi32(x, _mm256_mullo_epi32(column, _mm256_set1_epi32(static_cast<int>(blocks.width))));
+  return _mm256_add_epi32(in_block,
+                          _mm256_slli_epi32(column_index(column, pitch, layout), blocks.place_bits));
+}
+inline __m256i y_index(__m256i y, __m256i pitch, const TextureLayout& layout) {
+  if (!layout.in_blocks()) return row_index(y, pitch, layout);
+  const BlockPlaces& blocks = layout.blocks;
+  const auto times = [](__m256i v, std::uint32_t factor) {
+    return _mm256_mullo_epi32(v, _mm256_set1_epi32(static_cast<int>(factor)));
+  };
+  const __m256i row = blocks_before(y, blocks.height);
+  const __m256i in_block = times(_mm256_sub_epi32(y, times(row, blocks.height)), blocks.width);
+  return _mm256_add_epi32(in_block, _mm256_slli_epi32(row_index(row, pitch, layout), blocks.place_bits));
+}
+
+/// Of eight texels, where a component lies in Williams' layout (`plane_index`).
+inline __m256i plane_indices(__m256i first, int row_shift, int component) {
+  if (component == 0) return first;
+  if (component == 3) return _mm256_add_epi32(first, _mm256_set1_epi32(1 << 2 * row_shift));
+  const __m256i column = _mm256_and_si256(first, _mm256_set1_epi32((1 << row_shift) - 1));
+  // The highest bit of a small number is what its exponent says as a float.
+  const __m256i exponent = _mm256_sub_epi32(
+      _mm256_srli_epi32(_mm256_castps_si256(_mm256_cvtepi32_ps(column)), 23), _mm256_set1_epi32(127));
+  const __m256i side = _mm256_sllv_epi32(_mm256_set1_epi32(1), exponent);
+  const __m256i below = _mm256_add_epi32(first, _mm256_slli_epi32(side, row_shift));
+  return component == 1 ? below : _mm256_sub_epi32(below, side);
 }
 
 }  // namespace quadrille::models

@@ -49,9 +49,75 @@ void tile_rows(const TextureLayout& layout, std::uint32_t level, const std::byte
   }
 }
 
+/// Texels one by one, in any order.
+void place_texels(const TextureLayout& layout, std::uint32_t level, std::size_t bytes,
+                  const std::byte* source, std::byte* placed) {
+  const auto w = static_cast<std::uint32_t>(layout.width[level]),
+             h = static_cast<std::uint32_t>(layout.height[level]),
+             slices = static_cast<std::uint32_t>(layout.slices[level]);
+  const int row_shift = layout.plane_row_shift();
+  for (std::uint32_t slice = 0; slice < slices; ++slice)
+    for (std::uint32_t y = 0; y < h; ++y)
+      for (std::uint32_t x = 0; x < w; ++x, source += bytes) {
+        const std::uint32_t index = layout.texel_index(level, x, y, slice);
+        if (layout.tiling == Tiling::kWilliams)
+          for (std::uint32_t c = 0; c < bytes; ++c) placed[plane_index(index, row_shift, c)] = source[c];
+        else std::memcpy(placed + bytes * std::size_t{index}, source, bytes);
+      }
+}
+
+constexpr std::uint32_t kTile = 32;  // texels or blocks along a side
+
+std::uint32_t spread_bits(std::uint32_t v) {
+  v = (v | v << 8) & 0x00ff00ff;
+  v = (v | v << 4) & 0x0f0f0f0f;
+  v = (v | v << 2) & 0x33333333;
+  return (v | v << 1) & 0x55555555;
+}
+
+/// Does a texture of this format lie as Williams had it?
+bool has_planes(Format format, const TextureExtent& extent) {
+  const FormatInfo& info = format_info(format);
+  for (const ComponentBits& component : info.component)
+    if (component.bits != 8) return false;
+  const std::uint32_t longer = std::max(extent.width, extent.height),
+                      shorter = std::min(extent.width, extent.height);
+  return info.bytes == 4 && longer <= 2 * shorter;
+}
+
+/// What `TextureLayout::pitch` is of a level of so many texels or blocks of so many bytes.
+std::uint32_t pitch_of(Tiling tiling, std::uint32_t columns, std::uint32_t rows, std::uint32_t unit_bytes) {
+  if (tiling == Tiling::kLinear) {
+    const auto sector = static_cast<std::uint32_t>(kSectorBytes) / unit_bytes;
+    return (columns + sector - 1) / sector * sector;
+  }
+  if (tiling == Tiling::kMorton)
+    return static_cast<std::uint32_t>(std::bit_width(std::min(columns, rows) - 1));
+  return (columns + kTile - 1) / kTile * (kTile * kTile);
+}
+
+/// The squares of Williams, a slice each.
+void lay_out_planes(TextureLayout& layout) {
+  const auto side = std::bit_ceil(static_cast<std::uint32_t>(std::max(layout.width[0], layout.height[0])));
+  for (std::uint32_t level = 0; level < layout.levels; ++level) {
+    layout.pitch[level] = static_cast<std::int32_t>(2 * side);
+    layout.first[level] = static_cast<std::int32_t>(side >> level);
+    layout.slice_texels[level] = static_cast<std::int32_t>(6 * side * side);
+  }
+  const std::uint64_t bytes = std::uint64_t{6} * side * side * static_cast<std::uint64_t>(layout.slices[0]);
+  layout.bytes = (bytes + kLineBytes - 1) / kLineBytes * kLineBytes;
+}
+
 }  // namespace
 
 namespace {
+
+constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 31;
+
+UserError too_many_texels(const TextureExtent& extent) {
+  return user_error("texture of {} x {} x {} texels, {} layers: it takes 2^31 texels and more", extent.width,
+                    extent.height, extent.depth, extent.layers);
+}
 
 /// `unit_bytes`: of a texel or of a block.
 TextureLayout make_layout(const TextureExtent& extent, std::uint32_t levels, std::uint32_t unit_bytes,
@@ -78,22 +144,21 @@ TextureLayout make_layout(const TextureExtent& extent, std::uint32_t levels, std
                         slices = std::max(depth >> level, 1u) * layers;
     layout.width[level] = static_cast<std::int32_t>(w);
     layout.height[level] = static_cast<std::int32_t>(h);
-    constexpr std::uint32_t kTile = 32;  // texels or blocks along a side
-    const std::uint32_t tile = kTile * blocks.width;
-    layout.pitch[level] =
-        static_cast<std::int32_t>((w + tile - 1) / tile * (kTile * kTile << blocks.place_bits));
     layout.slices[level] = static_cast<std::int32_t>(slices);
+    if (tiling == Tiling::kWilliams) continue;
+    layout.pitch[level] = static_cast<std::int32_t>(pitch_of(
+        tiling, (w + blocks.width - 1) / blocks.width, (h + blocks.height - 1) / blocks.height, unit_bytes));
     // A slice ends with the line of its last texel, which has the highest index of all.
     const std::uint32_t slice =
         layout.texel_index(level, w - 1, h - 1) / line_texels * line_texels + line_texels;
     layout.slice_texels[level] = static_cast<std::int32_t>(slice);
     layout.first[level] = static_cast<std::int32_t>(next);
     next += std::uint64_t{slice} * slices;
-    if (next >= std::uint64_t{1} << 31)
-      throw user_error("texture of {} x {} x {} texels, {} layers: it takes 2^31 texels and more", width,
-                       height, depth, layers);
+    if (next >= kMostTexels) throw too_many_texels(extent);
   }
   layout.bytes = std::uint64_t{unit_bytes} * next >> blocks.place_bits;
+  if (tiling == Tiling::kWilliams) lay_out_planes(layout);
+  if (tiling == Tiling::kWilliams && layout.bytes >= kMostTexels) throw too_many_texels(extent);
   return layout;
 }
 
@@ -101,11 +166,37 @@ TextureLayout make_layout(const TextureExtent& extent, std::uint32_t levels, std
 
 TextureLayout make_texture_layout(const TextureExtent& extent, std::uint32_t levels,
                                   std::uint32_t texel_bytes) {
-  return make_layout(extent, levels, texel_bytes, Tiling::kTexture);
+  return make_layout(extent, levels, texel_bytes, Tiling::kTiled);
 }
-TextureLayout make_texture_layout(Format format, const TextureExtent& extent, std::uint32_t levels) {
-  return make_layout(extent, levels, format_bytes(format),
-                     is_block_format(format) ? Tiling::kBlocks : Tiling::kTexture, block_places(format));
+TextureLayout make_texture_layout(Format format, const TextureExtent& extent, std::uint32_t levels,
+                                  Tiling tiling) {
+  const bool other = tiling == Tiling::kWilliams && !has_planes(format, extent);
+  return make_layout(extent, levels, format_bytes(format), other ? Tiling::kTiled : tiling,
+                     block_places(format));
+}
+
+std::uint32_t TextureLayout::unit_index(std::uint32_t level, std::uint32_t x, std::uint32_t y) const {
+  const auto by = static_cast<std::uint32_t>(pitch[level]);
+  switch (tiling) {
+    case Tiling::kTiled: break;
+    case Tiling::kLinear:
+    case Tiling::kWilliams: return x + y * by;
+    case Tiling::kMorton: {
+      const std::uint32_t within = (1u << by) - 1;
+      return (spread_bits(x & within) | spread_bits(y & within) << 1) + (((x >> by) + (y >> by)) << 2 * by);
+    }
+    case Tiling::kSurface: return surface_x_part(x) + surface_y_part_in_tile(y) + (y >> 3) * by;
+  }
+  return x_part(x) + y_part_in_tile(y & 31) + (y >> 5) * by;
+}
+
+std::uint32_t TextureLayout::texel_index(std::uint32_t level, std::uint32_t x, std::uint32_t y,
+                                         std::uint32_t slice) const {
+  const std::uint32_t start =
+      static_cast<std::uint32_t>(first[level]) + slice * static_cast<std::uint32_t>(slice_texels[level]);
+  if (!in_blocks()) return start + unit_index(level, x, y);
+  return start + x % blocks.width + y % blocks.height * blocks.width +
+         (unit_index(level, x / blocks.width, y / blocks.height) << blocks.place_bits);
 }
 
 TextureView view_of_surfaces(std::span<const SurfaceLayout> levels, Format format) {
@@ -158,8 +249,8 @@ TextureView view_of_levels(const TextureView& view, std::uint32_t first, std::ui
 }
 
 TextureView allocate_texture(DeviceMemory& memory, Format format, const TextureExtent& extent,
-                             std::uint32_t levels) {
-  TextureView view{0, format, make_texture_layout(format, extent, levels)};
+                             std::uint32_t levels, Tiling tiling) {
+  TextureView view{0, format, make_texture_layout(format, extent, levels, tiling)};
   view.base = memory.allocate(view.layout.bytes);
   return view;
 }
@@ -170,9 +261,10 @@ void tile_level(DeviceMemory& memory, const TextureView& view, std::uint32_t lev
   QUADRILLE_CHECK(level < layout.levels && texels.size() == level_bytes(view, level),
                   "level {} of {} with {} bytes", level, layout.levels, texels.size());
   std::byte* const tiled = memory.write(view.base, layout.bytes).data();
-  if (layout.tiling == Tiling::kBlocks)
-    return tile_blocks(layout, level, format_bytes(view.format), texels.data(), tiled);
-  switch (format_bytes(view.format)) {
+  const std::size_t bytes = format_bytes(view.format);
+  if (layout.in_blocks()) return tile_blocks(layout, level, bytes, texels.data(), tiled);
+  if (layout.tiling != Tiling::kTiled) return place_texels(layout, level, bytes, texels.data(), tiled);
+  switch (bytes) {
     case 1: return tile_rows<1>(layout, level, texels.data(), tiled);
     case 2: return tile_rows<2>(layout, level, texels.data(), tiled);
     case 4: return tile_rows<4>(layout, level, texels.data(), tiled);

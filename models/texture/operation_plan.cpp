@@ -187,7 +187,7 @@ class OperationPlanner {
     __m256i texel[4];
     for (std::size_t corner = 0; corner < 4; ++corner) texel[corner] = load_lanes(out.texel[corner].data());
     lines_.add(texel, lanes, unread);
-    if (view_.layout.tiling == Tiling::kBlocks) blocks_.add(out, lanes);
+    if (view_.layout.in_blocks()) blocks_.add(out, lanes);
     count_work(plan_, lanes, nearest, unread);
   }
 
@@ -196,7 +196,7 @@ class OperationPlanner {
     const __m256i apart = _mm256_i32gather_epi32(view_.layout.slice_texels.data(), level, 4);
     const __m256i start = _mm256_add_epi32(at.first, _mm256_mullo_epi32(slice, apart));
     const TextureLayout& layout = view_.layout;
-    const __m256i column[2] = {x_index(x.first, layout), x_index(x.second, layout)},
+    const __m256i column[2] = {x_index(x.first, at.pitch, layout), x_index(x.second, at.pitch, layout)},
                   row[2] = {y_index(y.first, at.pitch, layout), y_index(y.second, at.pitch, layout)};
     for (std::size_t corner = 0; corner < 4; ++corner)
       store_lanes(out.texel[corner].data(),

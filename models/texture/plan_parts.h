@@ -47,6 +47,7 @@ inline void begin_plan(const TextureView& view, const SamplerState& sampler, con
   plan.border = sampler.border;
   if (plan.border == BorderColor::kOwn) plan.border_bits = sampler.border_bits;
   plan.components = view.components;
+  plan.plane_row_shift = view.layout.plane_row_shift();
   plan.bilinear_quads = plan.texels = 0;
 }
 
@@ -55,13 +56,27 @@ class LineCollector {
  public:
   explicit LineCollector(TexturePlan& plan)
       : plan_(plan),
-        texel_shift_(std::countr_zero(format_bytes(plan.format)) - block_places(plan.format).place_bits) {
+        texel_shift_(plan.plane_row_shift != 0 ? 0
+                                               : std::countr_zero(format_bytes(plan.format)) -
+                                                     block_places(plan.format).place_bits) {
     plan_.line_count = 0;
   }
 
   /// Adds the lines of one footprint, in order of corner and lane; lanes outside `used` touch nothing, and so
   /// do corners of `border`.
   void add(const __m256i (&texel)[4], std::uint32_t used, std::uint32_t border) {
+    add_places(texel, used, border);
+    if (plan_.plane_row_shift == 0) return;
+    for (int component = 1; component < 4; ++component) {
+      __m256i byte[4];
+      for (std::size_t corner = 0; corner < 4; ++corner)
+        byte[corner] = plane_indices(texel[corner], plan_.plane_row_shift, component);
+      add_places(byte, used, border);
+    }
+  }
+
+ private:
+  void add_places(const __m256i (&texel)[4], std::uint32_t used, std::uint32_t border) {
     const __m256i base_line = _mm256_set1_epi32(static_cast<int>(plan_.base / kLineBytes));
     const __m256i mask = lanes_of(used);
     __m256i line[4], sector[4];
@@ -89,7 +104,6 @@ class LineCollector {
     }
   }
 
- private:
   /// Bitwise or over eight lanes.
   static std::uint32_t any_lane(__m256i v) {
     __m128i half = _mm_or_si128(_mm256_castsi256_si128(v), _mm256_extracti128_si256(v, 1));

@@ -6,7 +6,10 @@
 #include "models/texture/lanes.h"
 #include "models/texture/sample.h"
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 
 namespace quadrille::models {
 
@@ -25,8 +28,29 @@ struct Rgba8Corners {
 struct TexelSource {
   const std::byte* base;
   Format format;
-  std::size_t channels;  ///< that a border colours
+  std::size_t channels;     ///< that a border colours
+  int plane_row_shift = 0;  ///< `TexturePlan::plane_row_shift`
+
+  /// Brings a texel of so many bytes.
+  void fetch(std::int32_t index, std::size_t bytes, std::byte* texel) const {
+    if (plane_row_shift == 0) {
+      std::memcpy(texel, base + static_cast<std::size_t>(index) * bytes, bytes);
+      return;
+    }
+    for (std::uint32_t c = 0; c < bytes; ++c)
+      texel[c] = base[plane_index(static_cast<std::uint32_t>(index), plane_row_shift, c)];
+  }
 };
+
+/// Eight texels of RGBA8.
+inline __m256i fetch_codes(const TexelSource& source, const std::array<std::int32_t, 8>& texel) {
+  if (source.plane_row_shift == 0)
+    return _mm256_i32gather_epi32(reinterpret_cast<const int*>(source.base), load_lanes(texel.data()), 4);
+  alignas(32) std::array<std::int32_t, 8> codes;
+  for (std::size_t lane = 0; lane < 8; ++lane)
+    source.fetch(texel[lane], 4, reinterpret_cast<std::byte*>(&codes[lane]));
+  return load_lanes(codes.data());
+}
 
 /// A border as RGBA8, which is the same with and without sRGB encoding.
 inline int border_code(BorderColor border, std::size_t channels) {
@@ -37,10 +61,7 @@ inline int border_code(BorderColor border, std::size_t channels) {
 inline Rgba8Corners fetch_rgba8(const TexturePlan::Footprint& f, const TexelSource& source,
                                 BorderColor border) {
   Rgba8Corners t;
-  for (std::size_t i = 0; i < 4; ++i) {
-    t.corner[i] =
-        _mm256_i32gather_epi32(reinterpret_cast<const int*>(source.base), load_lanes(f.texel[i].data()), 4);
-  }
+  for (std::size_t i = 0; i < 4; ++i) t.corner[i] = fetch_codes(source, f.texel[i]);
   for (std::size_t i = 0; f.border != 0 && i < 4; ++i)
     t.corner[i] = _mm256_blendv_epi8(t.corner[i], _mm256_set1_epi32(border_code(border, source.channels)),
                                      lanes_of(f.border >> (8 * i)));

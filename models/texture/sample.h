@@ -41,8 +41,9 @@ struct TexturePlan {
   static constexpr int kGroups = 4;  ///< lanes in groups of 8
   /// footprints of a group: two levels of 16 samples, or of two slices
   static constexpr int kMaxTaps = 32;
-  static constexpr int kMaxLines = kWarpLanes * kMaxTaps * 4;
-  static constexpr int kMaxBlocks = kMaxLines;
+  static constexpr int kMaxTexels = kWarpLanes * kMaxTaps * 4;
+  static constexpr int kMaxLines = kMaxTexels * 4;  ///< where the components of a texel lie apart
+  static constexpr int kMaxBlocks = kMaxTexels;
   /// of plans of one plane without anisotropy: 32 lanes x 2 levels x 4 texels
   static constexpr int kPlainBlocks = kWarpLanes * 2 * 4;
 
@@ -70,6 +71,8 @@ struct TexturePlan {
   BorderColor border = BorderColor::kTransparentBlack;
   std::array<std::uint32_t, 4> border_bits{};
   ComponentMapping components = kSameComponents;
+  /// In Williams' layout, log2 of the bytes of a row: texels are indices of their first component. Else 0.
+  int plane_row_shift = 0;
 
   // Of what operation_plan.cpp plans: several footprints a level, and what becomes of their texels.
   bool general = false;

@@ -56,8 +56,7 @@ TexelColors fetch_colors(const TexturePlan& plan, const TexturePlan::Footprint& 
   for (std::size_t half = 0; half < 2; ++half) {
     alignas(16) std::array<std::byte, 64> quad{};
     for (std::size_t i = 0; i < 4; ++i)
-      std::memcpy(quad.data() + i * format.bytes,
-                  source.base + static_cast<std::size_t>(texel[4 * half + i]) * format.bytes, format.bytes);
+      source.fetch(texel[4 * half + i], format.bytes, quad.data() + i * format.bytes);
     colors.half[half] = decode_quad(format, load_quad(quad.data(), format.bytes));
   }
   if (const std::uint32_t beyond = f.border >> (8 * corner) & 0xff; beyond != 0)
@@ -310,7 +309,7 @@ void filter_texture(const TexturePlan& plan, const DeviceMemory& memory, std::ar
   if (plan.general && plan.ask == TextureAsk::kQueryLod) return answer_level(plan, rgba);
   const std::byte* const base = memory.data() + plan.base;
   if (is_block_format(plan.format)) filter_blocks(plan, base, rgba);
-  else filter(plan, {base, plan.format, format_info(plan.format).channels}, rgba);
+  else filter(plan, {base, plan.format, format_info(plan.format).channels, plan.plane_row_shift}, rgba);
   const bool mapped = plan.components != kSameComponents;
   if (mapped && !(plan.general && (plan.compares || plan.ask == TextureAsk::kGather)))
     map_components(plan, rgba);

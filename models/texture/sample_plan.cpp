@@ -29,8 +29,8 @@ void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v
   out.border = has_border(context.sampler) ? beyond_border(context.sampler, at, columns, rows) : 0;
   out.missing = 0;
   const TextureLayout& layout = context.view.layout;
-  const __m256i left = _mm256_add_epi32(at.first, x_index(x.first, layout)),
-                right = _mm256_add_epi32(at.first, x_index(x.second, layout));
+  const __m256i left = _mm256_add_epi32(at.first, x_index(x.first, at.pitch, layout)),
+                right = _mm256_add_epi32(at.first, x_index(x.second, at.pitch, layout));
   const __m256i top = y_index(y.first, at.pitch, layout), bottom = y_index(y.second, at.pitch, layout);
   const __m256i texel[4] = {_mm256_add_epi32(left, top), _mm256_add_epi32(right, top),
                             _mm256_add_epi32(left, bottom), _mm256_add_epi32(right, bottom)};
@@ -38,7 +38,7 @@ void plan_footprint(const PlanContext& context, __m256 folded_u, __m256 folded_v
   store_lanes(out.frac_x.data(), x.weight);
   store_lanes(out.frac_y.data(), y.weight);
   lines.add(texel, used, out.border);
-  if (layout.tiling == Tiling::kBlocks) blocks.add(out, used);
+  if (layout.in_blocks()) blocks.add(out, used);
 }
 
 }  // namespace

@@ -32,10 +32,11 @@ void bring_texels(models::DeviceMemory& memory, const models::SurfaceLayout& sur
 }  // namespace
 
 DeviceResources::DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory,
-                                 TextureFills& fills)
+                                 TextureFills& fills, models::Tiling tiling)
     : stream_(stream),
       memory_(memory),
       fills_(fills),
+      tiling_(tiling),
       buffers_(stream.buffers.size()),
       textures_(stream.images.size()),
       surfaces_(stream.images.size()) {
@@ -45,7 +46,7 @@ DeviceResources::DeviceResources(const traces::CommandStream& stream, models::De
   };
   for (const traces::Buffer& b : stream.buffers) add(std::max<std::size_t>(1, b.data.size()));
   for (const traces::Image& i : stream.images) {
-    if (!i.is_attachment()) add(models::make_texture_layout(i.format, extent_of(i), i.levels).bytes);
+    if (!i.is_attachment()) add(models::make_texture_layout(i.format, extent_of(i), i.levels, tiling_).bytes);
     else
       for (std::uint32_t level = 0; level < i.levels; ++level)
         add(i.layers * level_surface(i, level).bytes());
@@ -90,7 +91,8 @@ const DeviceResources::Texture& DeviceResources::whole_texture(traces::Index ima
   std::optional<Texture>& texture = textures_[image];
   if (!texture) {
     const traces::Image& i = stream_.images[image];
-    const models::TextureView view = models::allocate_texture(memory_, i.format, extent_of(i), i.levels);
+    const models::TextureView view =
+        models::allocate_texture(memory_, i.format, extent_of(i), i.levels, tiling_);
     texture = {view, &fills_.add(i, view)};
     texture_bytes_ += view.layout.bytes;
   }

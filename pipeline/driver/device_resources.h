@@ -20,8 +20,9 @@ namespace quadrille::pipeline {
 class DeviceResources {
  public:
   /// Takes room for everything in the stream, its attachments too, so that growing never copies what is
-  /// there.
-  DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory, TextureFills& fills);
+  /// there. Textures lie in the order of `tiling`.
+  DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory, TextureFills& fills,
+                  models::Tiling tiling);
   /// Address of a buffer's first byte; it is aligned to a line.
   [[nodiscard]] std::uint64_t buffer(traces::Index index);
   struct Texture {
@@ -58,6 +59,7 @@ class DeviceResources {
   const traces::CommandStream& stream_;
   models::DeviceMemory& memory_;
   TextureFills& fills_;
+  models::Tiling tiling_;
   std::vector<std::optional<std::uint64_t>> buffers_;
   std::vector<std::optional<Texture>> textures_;
   /// By image: the levels of its layers, those of a layer one behind the other; none: not placed.

@@ -23,11 +23,11 @@ using traces::kNone;
 class FrameBuilder {
  public:
   FrameBuilder(const traces::CommandStream& stream, const models::Precision& precision,
-               const ShaderTarget& target, DeviceFrame& out)
+               const FrameTarget& target, DeviceFrame& out)
       : stream_(stream),
-        target_(target),
+        target_(target.shaders),
         out_(out),
-        resources_(stream, out.memory, out.fills),
+        resources_(stream, out.memory, out.fills, target.textures),
         storage_(stream, resources_),
         lives_(stream),
         queries_(stream.query_pools) {
@@ -41,6 +41,7 @@ class FrameBuilder {
     }
     out_.written_buffers = storage_.finish(out_.frame, out_.storage);
     out_.queries = queries_.ranges();
+    out_.sampled = sampled_.all();
     if (!leave_out) resources_.place_rest();
     out_.buffer_bytes = resources_.buffer_bytes();
     out_.texture_bytes = resources_.texture_bytes();
@@ -296,7 +297,8 @@ class FrameBuilder {
       lives_.check_sampled(bound, out_.frame.passes.size() - 1, program.name);
       out_.frame.passes.back().samples_attachments |= image.is_attachment();
       const DeviceResources::Texture texture = resources_.texture(bound);
-      states.push_back({texture.view, sampler(program, use, bound), texture.fill});
+      states.push_back({texture.view, sampler(program, use, bound), texture.fill,
+                        sampled_.note(bound.image, image, texture.view)});
       const std::uint32_t layers = models::is_array(bound.view) ? bound.layers : 0;
       sizes.push_back({traces::level_width(image, bound.first_level),
                        traces::level_height(image, bound.first_level), traces::level_count(stream_, bound),
@@ -347,6 +349,7 @@ class FrameBuilder {
   const traces::CommandStream& stream_;
   const ShaderTarget& target_;
   DeviceFrame& out_;
+  SampledImages sampled_;
   DeviceResources resources_;
   StorageBinder storage_;
   std::map<std::tuple<Index, Index, bool>, const CompiledPipeline*> programs_;  ///< true: for points
@@ -395,7 +398,7 @@ bool DeviceFrame::blends() const {
 }
 
 void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out,
-                 bool leave_out, const ShaderTarget& target) {
+                 bool leave_out, const FrameTarget& target) {
   FrameBuilder(stream, precision, target, out).build(leave_out);
 }
 

@@ -7,7 +7,9 @@
 
 #include "hw/frame/frame.h"
 #include "pipeline/compiler/compile.h"
+#include "pipeline/driver/frame_target.h"
 #include "pipeline/driver/query_ranges.h"
+#include "pipeline/driver/sampled_image.h"
 #include "pipeline/driver/storage_binder.h"
 #include "pipeline/driver/texture_fills.h"
 #include "traces/command_stream.h"
@@ -36,6 +38,7 @@ struct DeviceFrame {
   hw::Frame frame;
   std::vector<QueryRange> queries;  ///< in the order in which they begin
   std::vector<LeftOut> left_out;
+  std::vector<SampledImage> sampled;  ///< that programs of draws may sample (`hw::TextureState::texture`)
   /// the target of the last pass has a depth attachment, whether it is tested or not
   bool shown_has_depth = false;
   std::uint64_t buffer_bytes = 0, texture_bytes = 0, surface_bytes = 0;
@@ -50,10 +53,11 @@ struct DeviceFrame {
 };
 
 /// Fills `out` from a validated stream. With `leave_out` false what no draw reads is uploaded too, behind all
-/// else, so that no address depends on it, and all texels come now. Programs are compiled for `target`.
+/// else, so that no address depends on it, and all texels come now. Programs are compiled, and
+/// textures laid out, for `target`.
 /// The stream must live as long as `out` is run. Throws `UserError` for a shader that does not compile, a
 /// stage interface that does not match, or memory that does not fit.
 void build_frame(const traces::CommandStream& stream, const models::Precision& precision, DeviceFrame& out,
-                 bool leave_out = true, const ShaderTarget& target = {});
+                 bool leave_out = true, const FrameTarget& target = {});
 
 }  // namespace quadrille::pipeline

@@ -9,7 +9,7 @@
 /// program, and what was changed since.
 #pragma once
 
-#include "pipeline/compiler/target.h"
+#include "pipeline/driver/frame_target.h"
 #include "pipeline/machine/machine_plan.h"
 
 #include <functional>
@@ -202,6 +202,8 @@ class MachineConfig {
   [[nodiscard]] models::Precision precision() const {
     return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits, gpu.linear_log2, gpu.ellipse_axis};
   }
+  /// What a frame in its memory depends on.
+  [[nodiscard]] FrameTarget frame_target() const { return {shader_target(), texture.layout.value()}; }
   /// What the shader compiler knows of the cores.
   [[nodiscard]] ShaderTarget shader_target() const {
     return {core.warp_slots, core.register_rows, hw::ShaderCore::issue_timing(core)};

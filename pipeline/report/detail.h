@@ -22,8 +22,9 @@ struct DetailOptions {
   bool draws = false, tiles = false;
   /// use is there anyway, and is only reported; what moved in each slice is kept (flow_log.h)
   bool timeline = false;
-  bool path = false;    ///< the chain of waits that the frame's end hangs on (critical_path.h)
-  bool misses = false;  ///< why texture caches missed (miss_kinds.h)
+  bool path = false;      ///< the chain of waits that the frame's end hangs on (critical_path.h)
+  bool misses = false;    ///< why texture caches missed (miss_kinds.h)
+  bool textures = false;  ///< what each texture was asked for (texture_use.h)
   /// Something is kept by draw or by square.
   [[nodiscard]] bool any() const { return draws || tiles; }
 };

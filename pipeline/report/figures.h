@@ -9,6 +9,7 @@
 #include "pipeline/report/flow.h"
 #include "pipeline/report/miss_kinds.h"
 #include "pipeline/report/queries.h"
+#include "pipeline/report/texture_use.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -138,6 +139,8 @@ struct Figures {
   std::optional<CriticalPath> path = {};  ///< only where it was asked for
   /// by texture unit, only where it was asked for
   std::optional<std::vector<MissKindFigures>> texture_misses = {};
+  /// in the order in which draws name them first, only where it was asked for
+  std::optional<std::vector<TextureFigures>> textures = {};
   std::vector<ClientFigures> bandwidth;
   std::vector<Check> checks;
   std::vector<LeftOut> left_out;

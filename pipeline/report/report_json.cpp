@@ -281,6 +281,36 @@ void add_texture_misses(Json& document, const Figures& f) {
   document["texture_misses"]["units"] = std::move(units);
 }
 
+/// Only where it was asked for.
+void add_textures(Json& document, const Figures& f) {
+  if (!f.textures) return;
+  Json textures = Json::array();
+  for (const TextureFigures& t : *f.textures) {
+    const hw::TextureUse& use = t.use;
+    textures.push_back({{"name", t.image.name},
+                        {"format", t.image.format},
+                        {"width", t.image.width},
+                        {"height", t.image.height},
+                        {"depth", t.image.depth},
+                        {"layers", t.image.layers},
+                        {"levels", t.image.levels},
+                        {"bytes", t.image.end - t.image.begin},
+                        {"requests", use.requests},
+                        {"lanes", use.lanes},
+                        {"texels", use.texels},
+                        {"nearest", use.nearest},
+                        {"linear", use.linear},
+                        {"two_levels", use.two_levels},
+                        {"several_samples", use.several_samples},
+                        {"lanes_by_level", use.levels},
+                        {"look_ups", use.look_ups},
+                        {"misses", use.misses},
+                        {"read_bytes", use.read_bytes},
+                        {"memory_bytes", t.memory_bytes}});
+  }
+  document["textures"] = std::move(textures);
+}
+
 /// Only where the frame has some.
 void add_queries(Json& document, const std::vector<QueryFigures>& queries) {
   if (queries.empty()) return;
@@ -350,6 +380,7 @@ std::string report_json(const ReportSubject& s) {
                    {"left_out", std::move(left_out)}};
   if (f.path) document["critical_path"] = path_json(*f.path, f.frame.clock_mhz);
   add_texture_misses(document, f);
+  add_textures(document, f);
   add_queries(document, f.queries);
   add_detail(document, f);
   if (f.report_timeline) document["timeline"] = timeline_json(f);

@@ -222,6 +222,39 @@ std::string misses_text(const Figures& f) {
   return out + fmt::format("  without sets{:>14} misses in all\n", grouped(m.kinds.associative_misses));
 }
 
+/// The textures that took most, in as many lines.
+constexpr std::size_t kDearestTextures = 10;
+
+std::string textures_text(const Figures& f) {
+  if (!f.textures || f.textures->empty()) return "";
+  std::vector<const TextureFigures*> order;
+  order.reserve(f.textures->size());
+  for (const TextureFigures& t : *f.textures) order.push_back(&t);
+  std::ranges::stable_sort(order, std::ranges::greater(),
+                           [](const TextureFigures* t) { return t->use.read_bytes; });
+  order.resize(std::min(order.size(), kDearestTextures));
+  const auto share = [](std::uint64_t part, std::uint64_t whole) {
+    return whole == 0 ? 0.0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
+  };
+  std::string out = fmt::format(
+      "\nTEXTURES  {} of {} by bytes asked of the L2 cache\n  {:>12}{:>8}{:>8}{:>8}{:>12}{:>8}{:>12}{:>12}  "
+      "{}\n",
+      order.size(), f.textures->size(), "lanes", "linear", "2 levels", "level", "look-ups", "missed",
+      "L2 bytes", "memory", "texture");
+  for (const TextureFigures* t : order) {
+    const hw::TextureUse& use = t->use;
+    double level = 0;
+    for (std::size_t l = 0; l < use.levels.size(); ++l)
+      level += static_cast<double>(l) * static_cast<double>(use.levels[l]);
+    out += fmt::format("  {:>12}{:>6.0f} %{:>6.0f} %{:>8.2f}{:>12}{:>6.1f} %{:>12}{:>12}  {} {}x{} {}\n",
+                       grouped(use.lanes), share(use.linear, use.lanes), share(use.two_levels, use.lanes),
+                       use.lanes == 0 ? 0.0 : level / static_cast<double>(use.lanes), grouped(use.look_ups),
+                       share(use.misses, use.look_ups), grouped(use.read_bytes), grouped(t->memory_bytes),
+                       t->image.format, t->image.width, t->image.height, t->image.name);
+  }
+  return out;
+}
+
 /// The draws that were in flight longest, in as many lines.
 constexpr std::size_t kDearestDraws = 10;
 
@@ -331,8 +364,9 @@ double peak_memory_bytes_per_cycle(const MachineConfig& machine) {
 std::string report_table(const ReportSubject& subject, UnitRows rows) {
   return frame_text(subject) + notes_text(subject.figures) + units_text(subject, rows) +
          limit_text(subject.figures) + path_text(subject.figures) + bandwidth_text(subject) +
-         misses_text(subject.figures) + draws_text(subject.figures) + queries_text(subject.figures) +
-         checks_text(subject.figures) + left_out_text(subject.figures) + host_text(subject.figures);
+         misses_text(subject.figures) + textures_text(subject.figures) + draws_text(subject.figures) +
+         queries_text(subject.figures) + checks_text(subject.figures) + left_out_text(subject.figures) +
+         host_text(subject.figures);
 }
 
 }  // namespace quadrille::pipeline

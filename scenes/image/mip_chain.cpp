@@ -75,21 +75,22 @@ Taps taps(std::uint32_t target, std::uint32_t source_size, std::uint32_t target_
 }
 
 /// Decodes one row of 8-bit texels.
-void decode_row(const Rgba8Image& image, std::uint32_t y, bool srgb, std::vector<float>& out) {
-  const std::array<float, 256>& color = srgb ? tables().srgb_decode : tables().plain_decode;
+void decode_row(const Rgba8Image& image, std::uint32_t y, TexelCoding coding, std::vector<float>& out) {
+  const std::array<float, 256>& color = coding.srgb ? tables().srgb_decode : tables().plain_decode;
   const std::array<float, 256>& alpha = tables().plain_decode;
   const std::uint8_t* in = &image.pixels[out.size() * y];
   for (std::size_t i = 0; i < out.size(); i += 4) {
-    for (std::size_t c = 0; c < 3; ++c) out[i + c] = color[in[i + c]];
     out[i + 3] = alpha[in[i + 3]];
+    const float factor = coding.premultiplied ? out[i + 3] : 1.0F;
+    for (std::size_t c = 0; c < 3; ++c) out[i + c] = factor * color[in[i + c]];
   }
 }
 
-void encode(const FloatLevel& level, bool srgb, std::byte* out) {
+void encode(const std::vector<float>& texels, bool srgb, std::byte* out) {
   const Tables& table = tables();
-  for (std::size_t i = 0; i < level.texels.size(); i += 4) {
+  for (std::size_t i = 0; i < texels.size(); i += 4) {
     for (std::size_t c = 0; c < 4; ++c) {
-      const float value = std::min(level.texels[i + c], 1.0F);  // sums of weights may round above one
+      const float value = std::min(texels[i + c], 1.0F);  // sums of weights may round above one
       out[i + c] = static_cast<std::byte>(srgb && c < 3 ? table.encode_srgb(value) : encode_plain(value));
     }
   }
@@ -136,10 +137,10 @@ FloatLevel shrink(std::uint32_t width, std::uint32_t height, const SourceRow& so
 }
 
 /// Level 1: the finest level is decoded row by row, for as floats it would be the largest thing a load holds.
-FloatLevel shrink_image(const Rgba8Image& image, bool srgb) {
+FloatLevel shrink_image(const Rgba8Image& image, TexelCoding coding) {
   std::vector<float> row(std::size_t{4} * image.width);
   return shrink(image.width, image.height, [&](std::uint32_t y) {
-    decode_row(image, y, srgb, row);
+    decode_row(image, y, coding, row);
     return row.data();
   });
 }
@@ -147,6 +148,17 @@ FloatLevel shrink_image(const Rgba8Image& image, bool srgb) {
 FloatLevel shrink_level(const FloatLevel& level) {
   return shrink(level.width, level.height,
                 [&](std::uint32_t y) { return &level.texels[std::size_t{4} * level.width * y]; });
+}
+
+/// The finest level with its colours multiplied by alpha.
+std::vector<std::byte> premultiplied_texels(const Rgba8Image& image, TexelCoding coding) {
+  std::vector<std::byte> texels(image.pixels.size());
+  std::vector<float> row(std::size_t{4} * image.width);
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    decode_row(image, y, coding, row);
+    encode(row, coding.srgb, &texels[row.size() * y]);
+  }
+  return texels;
 }
 
 }  // namespace
@@ -163,22 +175,23 @@ std::uint32_t full_chain_levels(std::uint32_t width, std::uint32_t height) {
   return static_cast<std::uint32_t>(std::bit_width(std::max(width, height)));
 }
 
-void visit_mip_chain(const Rgba8Image& image, bool srgb, const traces::LevelSink& sink) {
-  sink(0, std::as_bytes(std::span(image.pixels)));
+void visit_mip_chain(const Rgba8Image& image, TexelCoding coding, const traces::LevelSink& sink) {
+  if (coding.premultiplied) sink(0, premultiplied_texels(image, coding));
+  else sink(0, std::as_bytes(std::span(image.pixels)));
   FloatLevel level{image.width, image.height, {}};
   std::vector<std::byte> codes;
   for (std::uint32_t number = 1; level.width > 1 || level.height > 1; ++number) {
-    level = level.texels.empty() ? shrink_image(image, srgb) : shrink_level(level);
+    level = level.texels.empty() ? shrink_image(image, coding) : shrink_level(level);
     codes.resize(level.texels.size());
-    encode(level, srgb, codes.data());
+    encode(level.texels, coding.srgb, codes.data());
     sink(number, codes);
   }
 }
 
-std::vector<std::byte> build_mip_chain(const Rgba8Image& image, bool srgb) {
+std::vector<std::byte> build_mip_chain(const Rgba8Image& image, TexelCoding coding) {
   std::vector<std::byte> chain;
   chain.reserve(image.pixels.size() / 3 * 4 + 256);  // a third for the levels, and their rounding
-  visit_mip_chain(image, srgb, [&](std::uint32_t /*level*/, std::span<const std::byte> texels) {
+  visit_mip_chain(image, coding, [&](std::uint32_t /*level*/, std::span<const std::byte> texels) {
     chain.insert(chain.end(), texels.begin(), texels.end());
   });
   return chain;

@@ -16,11 +16,17 @@ namespace quadrille::scenes {
 
 /// Levels of a full chain: down to 1x1.
 [[nodiscard]] std::uint32_t full_chain_levels(std::uint32_t width, std::uint32_t height);
-/// All levels of `image`, finest first, tightly packed RGBA8. With `srgb`, r, g and b are decoded before and
-/// encoded after filtering; alpha is linear always.
-[[nodiscard]] std::vector<std::byte> build_mip_chain(const Rgba8Image& image, bool srgb);
+/// What texels of eight bits stand for.
+struct TexelCoding {
+  bool srgb = false;  ///< r, g and b are decoded before and encoded after filtering; alpha is linear always
+  /// The chain's r, g and b are multiplied by alpha, in linear light: what is transparent has no colour that a
+  /// filter could bring in. The image's own are not.
+  bool premultiplied = false;
+};
+/// All levels of `image`, finest first, tightly packed RGBA8.
+[[nodiscard]] std::vector<std::byte> build_mip_chain(const Rgba8Image& image, TexelCoding coding);
 /// The same, level by level; only one is held at a time.
-void visit_mip_chain(const Rgba8Image& image, bool srgb, const traces::LevelSink& sink);
+void visit_mip_chain(const Rgba8Image& image, TexelCoding coding, const traces::LevelSink& sink);
 
 /// [VK1.3 #data-format-srgb] transfer functions, on 0..1.
 [[nodiscard]] double srgb_to_linear(double encoded);

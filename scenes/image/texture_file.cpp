@@ -334,11 +334,15 @@ TextureFile read_texture_file(std::span<const std::byte> bytes, const std::strin
   return is_ktx2(bytes) ? read_ktx2(file) : read_dds(bytes, file);
 }
 
-Rgba8Image decoded_level(const TextureFile& file, std::uint32_t level) {
-  const auto [width, height] = level_extent(file, level);
+std::span<const std::byte> stored_level(const TextureFile& file, std::uint32_t level) {
   std::uint64_t at = 0;
   for (std::uint32_t l = 0; l < level; ++l) at += level_bytes(file, l);
-  auto rest = std::span(file.bytes).subspan(at, level_bytes(file, level));
+  return std::span(file.bytes).subspan(at, level_bytes(file, level));
+}
+
+Rgba8Image decoded_level(const TextureFile& file, std::uint32_t level) {
+  const auto [width, height] = level_extent(file, level);
+  std::span<const std::byte> rest = stored_level(file, level);
   Rgba8Image picture{width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height)};
   if (!file.code) {
     std::memcpy(picture.pixels.data(), rest.data(), rest.size());

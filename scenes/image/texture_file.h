@@ -31,6 +31,8 @@ struct TextureFile {
 /// Universal (BasisLZ, UASTC) is refused by name. Throws `UserError` that starts with `name`. [KTX2], [DDS]
 [[nodiscard]] TextureFile read_texture_file(std::span<const std::byte> bytes, const std::string& name);
 
+/// The bytes of a level as the file has them.
+[[nodiscard]] std::span<const std::byte> stored_level(const TextureFile& file, std::uint32_t level);
 /// A level as a sampler of eight bits sees it. Components that the code lacks are (0, 0, 0, 1), signed
 /// numbers below 0 are 0, halves are clamped to 0..1.
 [[nodiscard]] Rgba8Image decoded_level(const TextureFile& file, std::uint32_t level);

@@ -12,6 +12,8 @@
 namespace quadrille::scenes {
 namespace {
 
+constexpr std::string_view kPremultiplied = "PREMULTIPLIED";
+
 constexpr std::array<const char*, kTextureSlots> kSlotNames{
     "BASE_COLOR",       "METALLIC_ROUGHNESS", "NORMAL",
     "OCCLUSION",        "EMISSIVE",           "SPECULAR",
@@ -237,11 +239,11 @@ bool covers_by_alpha(const Material& material, ShaderSet set) {
 }
 
 Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set,
-                       bool alpha_to_coverage, std::uint32_t samples) {
+                       bool alpha_to_coverage, std::uint32_t samples, bool file_colors) {
   if (!material.unlit && lacks_normals(primitive, set)) {
     Material plain = material;
     plain.unlit = true;
-    return choose_variant(plain, primitive, set, alpha_to_coverage, samples);
+    return choose_variant(plain, primitive, set, alpha_to_coverage, samples, file_colors);
   }
   Variant v;
   v.set = set;
@@ -251,6 +253,10 @@ Variant choose_variant(const Material& material, const Primitive& primitive, Sha
   choose_textures(v, material, primitive, set);
   choose_attributes(v, material, primitive, set);
   choose_modes(v, material, set);
+  // A shader of the user's looks at textures as they are.
+  if (material.alpha == AlphaMode::kBlend && v.textures[at(TextureSlot::kBaseColor)] && !file_colors &&
+      set != ShaderSet::kUser)
+    v.defines.emplace_back(kPremultiplied);
   if (alpha_to_coverage && covers_by_alpha(material, set))
     std::ranges::replace(v.defines, "ALPHA_MASK", "ALPHA_TO_COVERAGE");
   if (set == ShaderSet::kSamples) v.defines.push_back(fmt::format("SAMPLES {}", samples));
@@ -260,6 +266,10 @@ Variant choose_variant(const Material& material, const Primitive& primitive, Sha
   if (set == ShaderSet::kMaterial && primitive.partial_normals && v.attributes[at(Semantic::kNormal)])
     v.defines.emplace_back("PARTIAL_NORMALS");
   return v;
+}
+
+bool takes_premultiplied(const Variant& variant) {
+  return std::ranges::find(variant.defines, kPremultiplied) != variant.defines.end();
 }
 
 std::string_view material_shader_name(traces::ShaderStage stage, ShaderSet set) {

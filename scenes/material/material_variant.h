@@ -62,9 +62,13 @@ struct Variant {
 
 /// The variant for a material on a primitive. Points and lines without normals are drawn without light.
 /// [glTF2.0 #point-and-line-materials] For `kUser` everything that the two offer is read.
-/// `samples` a pixel matter to `kSamples` alone.
+/// `samples` a pixel matter to `kSamples` alone. With `file_colors` the levels of the base colour are those
+/// of its file.
 [[nodiscard]] Variant choose_variant(const Material& material, const Primitive& primitive, ShaderSet set,
-                                     bool alpha_to_coverage = false, std::uint32_t samples = 1);
+                                     bool alpha_to_coverage = false, std::uint32_t samples = 1,
+                                     bool file_colors = false);
+/// Do the shaders of a variant take the base colour of its texture as multiplied by its alpha?
+[[nodiscard]] bool takes_premultiplied(const Variant& variant);
 /// Does the alpha of a material's fragments say which samples they keep, where that is wished?
 [[nodiscard]] bool covers_by_alpha(const Material& material, ShaderSet set);
 

@@ -63,6 +63,7 @@ class Recorder {
   struct TextureKey {
     int image = 0;
     bool srgb = false;
+    bool premultiplied = false;
     auto operator<=>(const TextureKey&) const =
         default;  // NOLINT(modernize-use-nullptr): the comparison with zero that it stands for
   };
@@ -114,6 +115,8 @@ class Recorder {
   void add_textures(const std::vector<TextureKey>& keys);
   /// All of them, or where they may stay packed those that do not know their size.
   void unpack_images(const std::vector<TextureKey>& keys);
+  /// A texture as a slot of a variant's shaders wants it.
+  [[nodiscard]] static TextureKey texture_key(int image, std::size_t slot, const Variant& v);
   void leave_out_unread(Variant& variant);
   void record_frame_set();
   void record_draws();

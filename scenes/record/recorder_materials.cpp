@@ -2,8 +2,10 @@
 /// and the sets that bind them.
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <set>
 
+#include "models/texture/block/block_format.h"
 #include "scenes/data/parallel.h"
 #include "scenes/image/mip_chain.h"
 #include "scenes/image/texture_file.h"
@@ -66,17 +68,24 @@ bool is_srgb(std::size_t slot) {
          role == TextureSlot::kSpecularColor || role == TextureSlot::kSheenColor;
 }
 
-/// A texture with the levels of its file.
+/// A texture with the levels of its file. Blocks stay blocks, but where they hold signed numbers or halves, or
+/// have no format with sRGB where that is due.
 traces::Image file_image(const SceneImage& source, bool srgb) {
   const TextureFile& file = *source.file();
-  const auto packed =
-      std::make_shared<const traces::UnpackTexels>([file = source.file()](const traces::LevelSink& sink) {
+  const std::optional<traces::Format> blocks =
+      file.code ? models::block_format(*file.code, srgb) : std::nullopt;
+  const auto packed = std::make_shared<const traces::UnpackTexels>(
+      [file = source.file(), stored = blocks.has_value()](const traces::LevelSink& sink) {
         for (std::uint32_t level = 0; level < file->levels; ++level) {
+          if (stored) {
+            sink(level, stored_level(*file, level));
+            continue;
+          }
           const Rgba8Image picture = decoded_level(*file, level);
           sink(level, std::as_bytes(std::span(picture.pixels)));
         }
       });
-  const auto format = srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm;
+  const auto format = blocks.value_or(srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm);
   return {source.name(), format, file.width, file.height, file.levels, {}, packed};
 }
 
@@ -90,8 +99,11 @@ const Variant& Recorder::variant(const Primitive& primitive) {
       variants_.try_emplace({primitive.material, available, primitive.partial_normals, primitive.topology,
                              by_corners, primitive.style.point_size});
   if (added) {
-    entry->second = choose_variant(scene_.materials[static_cast<std::size_t>(primitive.material)], primitive,
-                                   shaders_.set(), options_.alpha_to_coverage, options_.samples);
+    const Material& material = scene_.materials[static_cast<std::size_t>(primitive.material)];
+    const int colors = material.textures[static_cast<std::size_t>(TextureSlot::kBaseColor)].image;
+    const bool file_colors = colors >= 0 && scene_.images[static_cast<std::size_t>(colors)].file() != nullptr;
+    entry->second = choose_variant(material, primitive, shaders_.set(), options_.alpha_to_coverage,
+                                   options_.samples, file_colors);
     if (shaders_.set() == ShaderSet::kUser && options_.leave_out) leave_out_unread(entry->second);
   }
   return entry->second;
@@ -120,9 +132,8 @@ void Recorder::add_textures(const std::vector<TextureKey>& keys) {
     const SceneImage::Size size = source(key).size();
     const auto format = key.srgb ? traces::Format::kR8G8B8A8Srgb : traces::Format::kR8G8B8A8Unorm;
     const auto packed = std::make_shared<const traces::UnpackTexels>(
-        [pixels = source(key).source(), srgb = key.srgb](const traces::LevelSink& sink) {
-          visit_mip_chain(*pixels(), srgb, sink);
-        });
+        [pixels = source(key).source(), coding = TexelCoding{key.srgb, key.premultiplied}](
+            const traces::LevelSink& sink) { visit_mip_chain(*pixels(), coding, sink); });
     stream_.images.push_back({source(key).name(),
                               format,
                               size.width,
@@ -145,6 +156,11 @@ void Recorder::unpack_images(const std::vector<TextureKey>& keys) {
   });
 }
 
+Recorder::TextureKey Recorder::texture_key(int image, std::size_t slot, const Variant& v) {
+  const bool is_color = slot == static_cast<std::size_t>(TextureSlot::kBaseColor);
+  return {image, is_srgb(slot), is_color && takes_premultiplied(v)};
+}
+
 void Recorder::record_textures() {
   std::set<TextureKey> used;
   for (const Instance& instance : placed_.at.instances) {
@@ -152,8 +168,8 @@ void Recorder::record_textures() {
     const Variant& v = variant(primitive);
     for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
       if (v.textures[slot])
-        used.insert({scene_.materials[static_cast<std::size_t>(primitive.material)].textures[slot].image,
-                     is_srgb(slot)});
+        used.insert(texture_key(
+            scene_.materials[static_cast<std::size_t>(primitive.material)].textures[slot].image, slot, v));
     }
   }
   const std::vector<TextureKey> keys(used.begin(), used.end());
@@ -163,7 +179,7 @@ void Recorder::record_textures() {
   if (options_.leave_out) return;
   std::vector<TextureKey> unread;
   for (int i = 0; i < static_cast<int>(scene_.images.size()); ++i) {
-    if (!used.contains({i, false}) && !used.contains({i, true})) unread.push_back({i, false});
+    if (!images_.contains(i)) unread.push_back({i, false, false});
   }
   add_textures(unread);
 }
@@ -201,8 +217,8 @@ traces::Index Recorder::material_set(int material, const Variant& v) {
   for (std::size_t slot = 0; slot < kTextureSlots; ++slot) {
     if (!v.textures[slot]) continue;
     const TextureUse& use = scene_.materials[static_cast<std::size_t>(material)].textures[slot];
-    set.textures.push_back({static_cast<std::uint32_t>(1 + slot), textures_.at({use.image, is_srgb(slot)}),
-                            sampler(use.sampler)});
+    set.textures.push_back({static_cast<std::uint32_t>(1 + slot),
+                            textures_.at(texture_key(use.image, slot, v)), sampler(use.sampler)});
   }
   stream_.descriptor_sets.push_back(std::move(set));
   return entry->second;

@@ -116,5 +116,6 @@ class Readings {
 [[nodiscard]] Result texture_cache(const Setting& setting);
 [[nodiscard]] Result texture_latency(const Setting& setting);
 [[nodiscard]] Result texture_filters(const Setting& setting);
+[[nodiscard]] Result compressed_textures(const Setting& setting);
 
 }  // namespace quadrille::studies::experiments

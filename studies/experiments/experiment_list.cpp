@@ -212,6 +212,17 @@ const Experiment kExperiments[] = {
      &texture_filters,
      {},
      "128x128"},
+    {"compressed-textures",
+     "Compressed textures",
+     "Nystad and others (Adaptive Scalable Texture Compression, High Performance Graphics 2012): at 3.56 "
+     "bits "
+     "a texel ASTC is nearer the original than S3TC and ETC2 at 4.",
+     "A texel a pixel in each format, whose bytes are known. Then scenes whose textures of RGBA8 were "
+     "compressed by libsquish and libastcenc, each on the default machine, and their pictures beside that of "
+     "RGBA8.",
+     &compressed_textures,
+     {"builtin:courtyard", "builtin:materials"},
+     "480x270"},
     {"units",
      "Every unit by itself",
      "Nothing is published to compare with: the ruler is arithmetic.",

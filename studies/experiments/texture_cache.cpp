@@ -1,4 +1,5 @@
-/// First-level texture caches: bytes fetched by size, by ways and by the order of tiles, and hit rates beside
+/// First-level texture caches: bytes fetched by size, by ways, by the order of tiles and by the layout of texels, and hit
+/// rates beside
 /// published ones.
 #include <fmt/format.h>
 
@@ -17,6 +18,7 @@ constexpr std::array kOrders{"scan", "morton", "hilbert"};
 constexpr std::array kOrderedKibibytes{2, 8, 32};  ///< of the caches that the orders are compared with
 constexpr std::array kReplacements{"lru", "tree", "fifo", "random", "srrip"};
 constexpr std::array kReplacedKibibytes{4, 8, 16};  ///< of the caches that the policies are compared with
+constexpr std::array kLayouts{"tiled", "linear", "morton", "williams"};  ///< of texels in memory
 constexpr int kLineBytes = 128, kUsualWays = 8;
 constexpr int kPublishedKnee = 16;  ///< KiB
 constexpr double kAtKnee = 0.95;    ///< of the bytes that the largest cache saves
@@ -31,7 +33,8 @@ std::vector<std::string> cache(int kibibytes, int ways, const char* order = "sca
 std::vector<std::vector<std::string>> machines() {
   std::vector<std::vector<std::string>> all;
   all.reserve(kKibibytes.size() + kWays.size() + kOrderedKibibytes.size() * kOrders.size() +
-              kReplacedKibibytes.size() * kReplacements.size() + 1);
+              kReplacedKibibytes.size() * kReplacements.size() + kOrderedKibibytes.size() * kLayouts.size() +
+              1);
   for (const int size : kKibibytes) all.push_back(cache(size, kUsualWays));
   for (const int ways : kWays) all.push_back(cache(kPublishedKnee, ways));
   for (const int size : kOrderedKibibytes)
@@ -40,6 +43,11 @@ std::vector<std::vector<std::string>> machines() {
     for (const char* replacement : kReplacements) {
       all.push_back(cache(size, kUsualWays));
       all.back().push_back(fmt::format("texture.replacement={}", replacement));
+    }
+  for (const int size : kOrderedKibibytes)
+    for (const char* layout : kLayouts) {
+      all.push_back(cache(size, kUsualWays));
+      all.back().push_back(fmt::format("texture.layout={}", layout));
     }
   all.emplace_back();
   return all;
@@ -58,6 +66,8 @@ struct SceneReadings {
       for (double& bytes : orders) bytes = fetched(*next++);
     for (auto& policies : by_replacement)
       for (double& bytes : policies) bytes = fetched(*next++);
+    for (auto& layouts : by_layout)
+      for (double& bytes : layouts) bytes = fetched(*next++);
     usual = next;
   }
   /// KiB of the smallest cache that saves nearly all that the largest saves.
@@ -72,6 +82,7 @@ struct SceneReadings {
   std::array<double, kWays.size()> by_ways{};
   std::array<std::array<double, kOrders.size()>, kOrderedKibibytes.size()> by_order{};
   std::array<std::array<double, kReplacements.size()>, kReplacedKibibytes.size()> by_replacement{};
+  std::array<std::array<double, kLayouts.size()>, kOrderedKibibytes.size()> by_layout{};
   const Readings* usual = nullptr;  ///< the default machine
 };
 
@@ -96,6 +107,12 @@ void judge(const std::string& name, const SceneReadings& scene, Result& result) 
                              scene.by_ways.back() / scene.by_ways.front(), 0, 1});
   result.verdicts.push_back(
       {name + ": KiB at the knee", static_cast<double>(scene.knee()), 1, kPublishedKnee});
+  // A line of a row holds one row of texels, of which a footprint reads two; one of Williams' a component.
+  const auto& small = scene.by_layout.front();
+  result.verdicts.push_back({name + ": bytes in rows over those in tiles, at 2 KiB", small[1] / small[0], 1,
+                             std::numeric_limits<double>::infinity()});
+  result.verdicts.push_back({name + ": bytes in Williams' layout over those in tiles, at 2 KiB",
+                             small[3] / small[0], 1, std::numeric_limits<double>::infinity()});
   const double at_knee = scene.by_size[4];
   static_assert(kKibibytes[4] == kPublishedKnee);
   result.verdicts.push_back({name + ": bytes without a cache over those at 16 KiB", scene.none / at_knee,
@@ -132,6 +149,7 @@ Result texture_cache(const Setting& setting) {
   result.table.head.insert(result.table.head.end(), {"no cache", "knee"});
   Table by_ways = table_of("16 KiB, by ways", kWays), by_order = table_of("by order of tiles", kOrders),
         by_replacement = table_of("by replacement", kReplacements),
+        by_layout = table_of("by layout in memory", kLayouts),
         rates{{"default machine", "look-ups that hit", "bytes of texels not fetched", "L2 requests that hit"},
               {}};
   std::string data, curves;
@@ -148,6 +166,9 @@ Result texture_cache(const Setting& setting) {
     for (std::size_t s = 0; s < kReplacedKibibytes.size(); ++s)
       by_replacement.rows.push_back(
           row_of(fmt::format("{}, {} KiB", name, kReplacedKibibytes[s]), scene.by_replacement[s]));
+    for (std::size_t s = 0; s < kOrderedKibibytes.size(); ++s)
+      by_layout.rows.push_back(
+          row_of(fmt::format("{}, {} KiB", name, kOrderedKibibytes[s]), scene.by_layout[s]));
     rates.rows.push_back(rates_of(name, *scene.usual));
     judge(name, scene, result);
     for (std::size_t s = 0; s < kKibibytes.size(); ++s)
@@ -156,7 +177,7 @@ Result texture_cache(const Setting& setting) {
     curves +=
         fmt::format("{}$d index {} using 1:2 with linespoints title {}", i > 0 ? ", " : "", i, quoted(name));
   }
-  result.further_tables = {by_ways, by_order, by_replacement, rates};
+  result.further_tables = {by_ways, by_order, by_layout, by_replacement, rates};
   result.remarks = {
       "The knee is the smallest cache that saves 95 % of the bytes that 128 KiB save. It stands for all "
       "textures "

@@ -201,6 +201,10 @@ test('bandwidth, caches and memory are the figures', async () => {
   assert.deepEqual(rowsOfKinds[0].slice(1, 5), kinds.map((kind) => misses[kind]));
   assert.equal(sum(rowsOfKinds[0].slice(2, 5)), sum(Object.entries(units).filter(([path]) => path.startsWith('texture_')).map(([, u]) => u.counters.cache_misses)));
   assert.deepEqual(rowsOfKinds.slice(1).map((row) => row.slice(1, 5)), Object.values(misses.units).map((m) => kinds.map((kind) => m[kind])));
+  const used = figures.textures.filter((t) => t.requests > 0);
+  const rowsOfTextures = await cells(page, 'textures-table');
+  assert.equal(rowsOfTextures.length, used.length);
+  assert.equal(sum(used.map((t) => t.read_bytes)), sum(Object.entries(units).filter(([path]) => path.startsWith('texture_')).map(([, u]) => u.counters.read_bytes)));
   const bus = await series(page, 'bus-chart');
   const memory = units.memory_0.counters;
   const whole = sum(['read', 'write', 'refresh', 'turnaround', 'activation', 'spacing', 'idle'].map((part) => memory[`bus_${part}`]));

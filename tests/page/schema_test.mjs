@@ -19,6 +19,7 @@ const RUNS = {
   'draws, squares and slices': ['builtin:quad', '--detail', 'draws,tiles,timeline'],
   'the critical path, of the frame and by draw': ['builtin:cubes', '--detail', 'draws,path'],
   'kinds of misses': ['builtin:quad', '--detail', 'misses'],
+  'use of textures': ['builtin:deferred', '--detail', 'textures'],
   'the critical path alone': ['builtin:triangle', '--detail', 'path'],
   'draws alone': ['builtin:primitives', '--detail', 'draws'],
   'squares alone, on a large machine with HBM2 and a window': ['builtin:shadow', '--machine', 'large', '--set', 'memory.kind=hbm2', '--window', '100', '--detail', 'tiles'],

@@ -136,7 +136,7 @@ TEST_CASE("flow: tokens of a slice are those that are seen in the links at every
   const traces::CommandStream stream = test::random_stream(5);
   const MachineConfig config;
   DeviceFrame frame(std::uint64_t{1} << 30);
-  build_frame(stream, config.precision(), frame, true, config.shader_target());
+  build_frame(stream, config.precision(), frame, true, config.frame_target());
   hw::NativeDriver driver("native_driver");
   MachineOptions options;
   options.external_driver = &driver;

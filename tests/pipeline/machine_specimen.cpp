@@ -22,7 +22,7 @@ class MachineSpecimen final : public hw::contract::Specimen {
         if (path.starts_with("link.")) group->find("depth")->parse("1");
       }
     }
-    build_frame(stream, config_.precision(), frame_);
+    build_frame(stream, config_.precision(), frame_, true, {{}, config_.texture.layout});
     if (config_.command_processor.cull_draws) find_draws_outside(frame_.frame, frame_.memory);
     MachineOptions options;
     options.external_driver = &driver;

@@ -23,7 +23,7 @@ std::string run_here(const Settings& settings, bool strict, const traces::Comman
   config.triangle_setup.triangle_slots.set(8);
   for (const auto& [key, value] : settings) config.set(key, value, "test");
   DeviceFrame frame(std::uint64_t{1} << 30);
-  build_frame(stream, config.precision(), frame);
+  build_frame(stream, config.precision(), frame, true, {{}, config.texture.layout});
   if (config.command_processor.cull_draws) find_draws_outside(frame.frame, frame.memory);
   std::optional<hw::StrictDriver> driver;
   MachineOptions options;

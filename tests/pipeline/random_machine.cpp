@@ -2,6 +2,7 @@
 #include "tests/pipeline/random_source.h"
 
 #include <algorithm>
+#include <array>
 
 namespace quadrille::pipeline::test {
 
@@ -49,6 +50,9 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.texture.replacement.set(*models::replacement_policies().all()[seed % 5]);
   config.l2.replacement.set(*models::replacement_policies().all()[seed / 5 % 5]);
   config.depth.compression.set(static_cast<hw::DepthCompression>(seed % 3));
+  config.texture.layout.set(static_cast<models::Tiling>(seed / 2 % 4));
+  config.texture.tag_banks.set(std::array{1, 2, 4, 16}[seed / 3 % 4]);
+  config.texture.fetched_sectors.set(static_cast<hw::FetchedSectors>(seed / 4 % 3));
   config.texture.blocks_held.set(static_cast<hw::BlocksHeld>(seed / 3 % 2));
   config.texture.decode_blocks_per_clk.set(1 + static_cast<int>(seed % 8));
   config.rop.compression.set(static_cast<hw::ColorCompression>(seed / 2 % 3));

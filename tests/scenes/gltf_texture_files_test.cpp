@@ -13,9 +13,10 @@ using models::BlockCode;
 namespace {
 
 /// What a glTF file that names this texture's file by `texture` records: its images that bring texels.
-std::vector<traces::Image> recorded(const FileBytes& file, const std::string& texture) {
+std::vector<traces::Image> recorded(const FileBytes& file, const std::string& texture,
+                                    const std::string& role = "emissiveTexture") {
   const TempGltf gltf(triangle_gltf(
-      R"(,"material":0)", R"(,"materials":[{"emissiveTexture":{"index":0}}],"textures":[{)" + texture +
+      R"(,"material":0)", R"(,"materials":[{")" + role + R"(":{"index":0}}],"textures":[{)" + texture +
                               R"(}],"images":[{"uri":")" + data_uri(file) + R"("}])"));
   SceneOptions options;
   options.width = options.height = 16;
@@ -30,13 +31,6 @@ std::vector<traces::Image> recorded(const FileBytes& file, const std::string& te
 
 TEST_CASE("gltf: textures have the levels of their KTX2 or DDS file") {
   const FileBytes blocks = levels_of(BlockCode::kBc1Rgba, 20, 12, 5);
-  const TextureFile file{BlockCode::kBc1Rgba, 20, 12, 5, blocks};
-  FileBytes expected;
-  for (std::uint32_t level = 0; level < 5; ++level) {
-    const Rgba8Image picture = decoded_level(file, level);
-    const auto bytes = std::as_bytes(std::span(picture.pixels));
-    expected.insert(expected.end(), bytes.begin(), bytes.end());
-  }
   const std::string by_source = R"("source":0)",
                     by_extension = R"("extensions":{"MSFT_texture_dds":{"source":0}})";
   for (const auto& [bytes, texture] : {std::pair{ktx2({}, BlockCode::kBc1Rgba, blocks), by_source},
@@ -47,6 +41,39 @@ TEST_CASE("gltf: textures have the levels of their KTX2 or DDS file") {
     CHECK(textures[0].width == 20);
     CHECK(textures[0].height == 12);
     CHECK(textures[0].levels == 5);
+    CHECK(textures[0].format == traces::Format::kBc1RgbaSrgb);
+    CHECK(textures[0].texels == blocks);
+  }
+}
+
+TEST_CASE("gltf: blocks of a KTX2 file stay blocks where the machine has their format") {
+  using traces::Format;
+  for (const auto& [code, role, format] :
+       {std::tuple{BlockCode::kBc7, "emissiveTexture", Format::kBc7Srgb},
+        {BlockCode::kBc7, "occlusionTexture", Format::kBc7Unorm},
+        {BlockCode::kBc5Unorm, "normalTexture", Format::kBc5Unorm},
+        {BlockCode::kAstc6x6Srgb, "emissiveTexture", Format::kAstc6x6Srgb},
+        {BlockCode::kAstc6x6Srgb, "occlusionTexture", Format::kAstc6x6Unorm},
+        {BlockCode::kEtc2Rgb8A1, "emissiveTexture", Format::kEtc2Rgb8A1Srgb},
+        // No format with sRGB; numbers with a sign, which glTF's textures do not have; halves.
+        {BlockCode::kBc4Unorm, "emissiveTexture", Format::kR8G8B8A8Srgb},
+        {BlockCode::kBc5Snorm, "normalTexture", Format::kR8G8B8A8Unorm},
+        {BlockCode::kBc6hUfloat, "emissiveTexture", Format::kR8G8B8A8Srgb}}) {
+    INFO(models::block_code_info(code).name << " " << role);
+    const FileBytes blocks = levels_of(code, 20, 12, 5);
+    const std::vector<traces::Image> textures = recorded(ktx2({}, code, blocks), R"("source":0)", role);
+    REQUIRE(textures.size() == 1);
+    CHECK(textures[0].format == format);
+    const bool stays = models::is_block_format(format);
+    CHECK((textures[0].texels == blocks) == stays);
+    if (stays) continue;
+    const TextureFile file{code, 20, 12, 5, blocks};
+    FileBytes expected;
+    for (std::uint32_t level = 0; level < 5; ++level) {
+      const Rgba8Image picture = decoded_level(file, level);
+      const auto bytes = std::as_bytes(std::span(picture.pixels));
+      expected.insert(expected.end(), bytes.begin(), bytes.end());
+    }
     CHECK(textures[0].texels == expected);
   }
 }

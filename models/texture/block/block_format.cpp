@@ -82,6 +82,18 @@ BlockCode block_code(Format format) { return row_of(format).code; }
 
 Format decoded_format(Format format) { return is_block_format(format) ? row_of(format).decoded : format; }
 
+std::optional<Format> block_format(BlockCode code, bool srgb) {
+  const BlockCodeInfo& info = block_code_info(code);
+  const auto fits = [&](const Row& row) {
+    if (format_info(row.format).numeric != (srgb ? Numeric::kSrgb : Numeric::kUnorm)) return false;
+    const BlockCodeInfo& other = block_code_info(row.code);
+    return row.code == code ||
+           (is_astc(code) && is_astc(row.code) && other.width == info.width && other.height == info.height);
+  };
+  const auto* const row = std::ranges::find_if(kRows, fits);
+  return row == kRows.end() ? std::nullopt : std::optional(row->format);
+}
+
 std::vector<std::byte> decode_blocks(Format format, std::uint32_t width, std::uint32_t height,
                                      std::span<const std::byte> blocks) {
   const Row& row = row_of(format);

@@ -92,7 +92,12 @@ vec2 transform_uv(int slot, vec2 uv) {
 vec4 read_base_color() {
   vec4 color = material.base_color;
 #ifdef BASE_COLOR_UV
-  color *= texture(base_color_texture, BASE_COLOR_UV);
+  vec4 texel = texture(base_color_texture, BASE_COLOR_UV);
+#ifdef PREMULTIPLIED
+  // Filtered as colour times alpha, so that transparent texels count for nothing.
+  texel.rgb /= max(texel.a, 1e-6);
+#endif
+  color *= texel;
 #endif
 #ifdef HAS_COLOR
   color *= v_color;

@@ -35,6 +35,97 @@ TEST_CASE("texture layout: texels of a chain have their own places within it") {
   }
 }
 
+namespace {
+
+constexpr Tiling kTextureTilings[] = {Tiling::kTiled, Tiling::kLinear, Tiling::kMorton, Tiling::kWilliams};
+
+/// The bytes that a texel has in the chain, first component first.
+std::vector<std::uint64_t> texel_places(const TextureLayout& layout, std::uint32_t bytes, std::uint32_t level,
+                                        std::uint32_t x, std::uint32_t y, std::uint32_t slice) {
+  const std::uint32_t index = layout.texel_index(level, x, y, slice);
+  std::vector<std::uint64_t> places(bytes);
+  for (std::uint32_t i = 0; i < bytes; ++i)
+    places[i] = layout.tiling == Tiling::kWilliams ? plane_index(index, layout.plane_row_shift(), i)
+                                                   : std::uint64_t{bytes} * index + i;
+  return places;
+}
+
+}  // namespace
+
+TEST_CASE("texture layout: in every order each byte of a chain has its own place, and holds what was given") {
+  for (const Tiling tiling : kTextureTilings) {
+    for (const auto& [format, extent, levels] :
+         {std::tuple{Format::kR8G8B8A8Srgb, TextureExtent{50, 37}, 6u},
+          {Format::kR8G8B8A8Unorm, TextureExtent{1, 1}, 1u},
+          {Format::kR8G8B8A8Unorm, TextureExtent{64, 64, 1, 6}, 7u},
+          {Format::kR8G8B8A8Unorm, TextureExtent{16, 31, 9}, 5u},
+          {Format::kR8G8B8A8Unorm, TextureExtent{3, 300}, 9u},
+          {Format::kR8Unorm, TextureExtent{70, 5}, 3u},
+          {Format::kR32G32B32A32Float, TextureExtent{33, 65, 1, 2}, 7u}}) {
+      DeviceMemory memory;
+      const TextureView view = allocate_texture(memory, format, extent, levels, tiling);
+      INFO(format_info(format).name << " " << extent.width << "x" << extent.height << ", order "
+                                    << static_cast<int>(tiling));
+      const std::uint32_t bytes = format_bytes(format);
+      std::vector<std::byte> texels;
+      std::set<std::uint64_t> places;
+      std::vector<std::uint64_t> in_order;
+      for (std::uint32_t level = 0; level < levels; ++level)
+        for (std::uint32_t slice = 0; slice < static_cast<std::uint32_t>(view.layout.slices[level]); ++slice)
+          for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(view.layout.height[level]); ++y)
+            for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(view.layout.width[level]); ++x)
+              for (const std::uint64_t place : texel_places(view.layout, bytes, level, x, y, slice)) {
+                places.insert(place);
+                in_order.push_back(place);
+                texels.push_back(static_cast<std::byte>(in_order.size() * 2654435761u >> 13));
+              }
+      CHECK(places.size() == in_order.size());
+      CHECK(*places.rbegin() < view.layout.bytes);
+      CHECK(view.layout.bytes % kLineBytes == 0);
+      tile_texture(memory, view, texels);
+      std::size_t wrong = 0;
+      for (std::size_t i = 0; i < texels.size(); ++i)
+        wrong += memory.load<std::byte>(view.base + in_order[i]) == texels[i] ? 0 : 1;
+      CHECK(wrong == 0);
+    }
+  }
+}
+
+TEST_CASE("texture layout: rows, Morton order and Williams' quadrants are where they are said to be") {
+  const TextureExtent extent{32, 16};
+  const TextureLayout rows = make_texture_layout(Format::kR8G8B8A8Unorm, extent, 6, Tiling::kLinear);
+  CHECK(rows.texel_index(0, 5, 3) == 3 * 32 + 5);
+  CHECK(rows.texel_index(0, 0, 0) + 32 * 16 == rows.texel_index(1, 0, 0));
+  CHECK(rows.texel_index(4, 1, 0) + 7 < rows.texel_index(5, 0, 0));  // from a line to a line
+  const TextureLayout morton = make_texture_layout(Format::kR8G8B8A8Unorm, extent, 6, Tiling::kMorton);
+  CHECK(morton.texel_index(0, 1, 0) == 1);
+  CHECK(morton.texel_index(0, 0, 1) == 2);
+  CHECK(morton.texel_index(0, 2, 3) == 0b1110);
+  CHECK(morton.texel_index(0, 15, 15) == 255);
+  CHECK(morton.texel_index(0, 16, 0) == 256);  // the next square
+  const TextureLayout pyramid = make_texture_layout(Format::kR8G8B8A8Unorm, extent, 6, Tiling::kWilliams);
+  CHECK(pyramid.plane_row_shift() == 6);
+  const auto place = [&](std::uint32_t level, std::uint32_t x, std::uint32_t y, std::uint32_t component) {
+    const std::uint32_t at = plane_index(pyramid.texel_index(level, x, y), 6, component);
+    return std::pair{at % 64, at / 64};
+  };
+  using Place = std::pair<std::uint32_t, std::uint32_t>;
+  CHECK(place(0, 3, 5, 0) == Place{35, 5});
+  CHECK(place(0, 3, 5, 1) == Place{35, 37});
+  CHECK(place(0, 3, 5, 2) == Place{3, 37});
+  CHECK(place(0, 3, 5, 3) == Place{35, 64 + 5});
+  CHECK(place(2, 3, 2, 0) == Place{11, 2});
+  CHECK(place(2, 3, 2, 1) == Place{11, 10});
+  CHECK(place(2, 3, 2, 2) == Place{3, 10});
+  CHECK(place(5, 0, 0, 0) == Place{1, 0});
+  // What Williams' layout is not for is tiled.
+  for (const auto& [format, other] : {std::pair{Format::kR8G8B8A8Unorm, TextureExtent{64, 16}},
+                                      {Format::kR8Unorm, TextureExtent{64, 64}},
+                                      {Format::kBc1RgbUnorm, TextureExtent{64, 64}},
+                                      {Format::kR16G16Float, TextureExtent{64, 64}}})
+    CHECK(make_texture_layout(format, other, 1, Tiling::kWilliams).tiling == Tiling::kTiled);
+}
+
 TEST_CASE("texture layout: a sector is 4x2 texels and a line 8x4 and a tile 32x32") {
   const TextureLayout layout = make_texture_layout(256, 256, 9);
   for (std::uint32_t y = 0; y < 256; ++y) {
@@ -93,7 +184,8 @@ TEST_CASE("texture layout: texels of blocks of every size have their own places,
     INFO(info.name);
     for (const auto& [width, height, levels] :
          {std::tuple{1u, 1u, 1u}, {47u, 101u, 7u}, {400u, 13u, 9u}, {1u, 70u, 7u}, {12u, 12u, 4u}}) {
-      const TextureLayout layout = make_texture_layout(format, TextureExtent{width, height}, levels);
+      const auto tiling = static_cast<Tiling>(f % 3);
+      const TextureLayout layout = make_texture_layout(format, TextureExtent{width, height}, levels, tiling);
       CHECK(layout.bytes % kLineBytes == 0);
       std::set<std::uint32_t> texels, blocks;
       std::size_t count = 0, block_count = 0;

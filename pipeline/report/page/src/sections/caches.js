@@ -35,6 +35,27 @@ function kindsOfMisses({ texture_misses: all }) {
   ], rows));
 }
 
+/** What each texture was asked for, the dearest first; only where it was asked for. */
+function useOfTextures({ textures }) {
+  if (!textures || textures.length === 0) return null;
+  const rows = textures.filter((t) => t.requests > 0).sort((a, b) => b.read_bytes - a.read_bytes);
+  const level = (t) => t.lanes_by_level.reduce((all, lanes, l) => all + l * lanes, 0) / t.lanes;
+  return panel('Textures', table('textures-table', [
+    { title: 'texture', of: (t) => t.name },
+    { title: 'texels', of: (t) => `${t.width}x${t.height}${t.depth > 1 ? `x${t.depth}` : ''}${t.layers > 1 ? `, ${t.layers} layers` : ''}` },
+    { title: 'format', of: (t) => t.format },
+    { title: 'lanes', number: true, of: (t) => number(t.lanes) },
+    { title: explained('linear', 'Lanes that read 2x2 texels of a level, of all'), number: true, of: (t) => percent(ratio(t.linear, t.lanes)) },
+    { title: explained('two levels', 'Lanes whose texels are of two levels'), number: true, of: (t) => percent(ratio(t.two_levels, t.lanes)) },
+    { title: explained('along an axis', 'Lanes with several anisotropic samples'), number: true, of: (t) => percent(ratio(t.several_samples, t.lanes)) },
+    { title: explained('level', 'Mean of the finer level that lanes read'), number: true, of: (t) => level(t).toFixed(2) },
+    { title: 'look-ups', number: true, of: (t) => number(t.look_ups) },
+    { title: 'misses', number: true, of: (t) => number(t.misses) },
+    { title: explained('L2 bytes', 'Bytes asked of the L2 cache'), number: true, of: (t) => number(t.read_bytes) },
+    { title: explained('memory bytes', 'Bytes that memory read for the texture units'), number: true, of: (t) => number(t.memory_bytes) },
+  ], rows));
+}
+
 export function caches({ figures, order }) {
   const rows = kindsOf(figures, order).filter(isCache).map(look).filter((r) => r.requests > 0);
   if (rows.length === 0) return null;
@@ -63,5 +84,5 @@ export function caches({ figures, order }) {
       column('hits'), column('merged'), column('misses'),
       { title: explained('hit', 'Hits of all look-ups'), number: true, of: (r) => percent(ratio(r.hits, r.requests)) },
     ], rows)),
-    kindsOfMisses(figures));
+    kindsOfMisses(figures), useOfTextures(figures));
 }
