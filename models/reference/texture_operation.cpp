@@ -125,7 +125,7 @@ Footprint footprint_of(const TextureView& texture, const TextureQuestion& q, con
     const EllipseAxes axes =
         ellipse_axes({place.along_x[0], place.along_x[1]}, {place.along_y[0], place.along_y[1]});
     if (anisotropy_of(texture) == Anisotropy::kEllipse)
-      return {std::log2(std::max(axes.shorter, axes.longer / most)), 1, {}, true};
+      return {std::log2(std::max(std::sqrt(short2), axes.longer / most)), 1, {}, true};
     axis = {axes.longer * axes.direction[0], axes.longer * axes.direction[1]};
     long2 = axes.longer * axes.longer;
     short2 = axes.shorter * axes.shorter;

@@ -174,11 +174,12 @@ void OperationPlaces::level_of_detail(std::size_t first, std::array<float, kWarp
 
 /// Samples and their line, of pixels whose footprint is longer one way than the other; lambda is that of the
 /// shorter way, as far as so many samples allow. A footprint within a texel takes one. Of ellipses there is
-/// only lambda, that of the shorter axis.
+/// only lambda: that of the shorter difference, or where the ellipse is widened more, of its shorter axis.
 __m256 OperationPlaces::stretch(std::size_t first, __m256 x2, __m256 y2,
                                 std::array<float, kWarpLanes>& samples) {
   const __m256 x_longer = _mm256_cmp_ps(x2, y2, _CMP_GE_OQ);
-  __m256 long2 = _mm256_max_ps(x2, y2), short2 = _mm256_min_ps(x2, y2);
+  const __m256 shorter2 = _mm256_min_ps(x2, y2);
+  __m256 long2 = _mm256_max_ps(x2, y2), short2 = shorter2;
   const __m256 along[2][2] = {{load(along_x_[0], first), load(along_y_[0], first)},
                               {load(along_x_[1], first), load(along_y_[1], first)}};
   __m256 line[2];
@@ -188,8 +189,8 @@ __m256 OperationPlaces::stretch(std::size_t first, __m256 x2, __m256 y2,
   const __m256 most = _mm256_set1_ps(most_anisotropy()), one = _mm256_set1_ps(1.0f),
                half = _mm256_set1_ps(0.5f);
   if (precision_.anisotropic_footprint == AnisotropicFootprint::kEllipse) {
-    const __m256 widened = _mm256_max_ps(short2, _mm256_div_ps(long2, _mm256_mul_ps(most, most)));
-    return _mm256_mul_ps(unit_log2(widened, precision_), half);
+    const __m256 least2 = _mm256_div_ps(long2, _mm256_mul_ps(most, most));
+    return _mm256_mul_ps(unit_log2(_mm256_max_ps(shorter2, least2), precision_), half);
   }
   const __m256 within = _mm256_cmp_ps(long2, one, _CMP_LE_OQ);
   const __m256 ratio =
