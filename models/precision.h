@@ -2,7 +2,17 @@
 /// numeric contract (docs/architecture.md).
 #pragma once
 
+#include <cstdint>
+
 namespace quadrille::models {
+
+/// What an anisotropic filter takes of a level. The ellipse is the one that a round pixel covers. [P: Heckbert
+/// 1989]
+enum class AnisotropicFootprint : std::uint8_t {
+  kLongerDifference,  ///< samples along the longer of the pixel's two differences, as in Vulkan's equations
+  kEllipseAxis,       ///< samples along the longer axis of the ellipse
+  kEllipse            ///< the texels within the ellipse, weighed (texture/ellipse_texels.h)
+};
 
 struct Precision {
   int subpixel_bits = 8;  ///< fractional bits of window positions, 4..12
@@ -11,9 +21,7 @@ struct Precision {
   /// the level of detail's log2 is linear between powers of two, as cheap hardware has it: up to 0.043 levels
   /// low
   bool linear_log2 = false;
-  /// Anisotropic samples lie along the longer axis of the ellipse that a round pixel covers [P: Heckbert
-  /// 1989]; else along the longer of the pixel's two differences, as in Vulkan's equations
-  bool ellipse_axis = false;
+  AnisotropicFootprint anisotropic_footprint = AnisotropicFootprint::kLongerDifference;
 };
 
 }  // namespace quadrille::models

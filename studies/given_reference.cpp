@@ -21,6 +21,15 @@ ref::GivenTriangle given(const pipeline::RasterizedPiece& t) {
   return g;
 }
 
+ref::Anisotropy anisotropy(models::AnisotropicFootprint footprint) {
+  switch (footprint) {
+    case models::AnisotropicFootprint::kLongerDifference: break;
+    case models::AnisotropicFootprint::kEllipseAxis: return ref::Anisotropy::kEllipseAxis;
+    case models::AnisotropicFootprint::kEllipse: return ref::Anisotropy::kEllipse;
+  }
+  return ref::Anisotropy::kLongerDifference;
+}
+
 }  // namespace
 
 MachineAndReference render_with_reference(const traces::CommandStream& stream,
@@ -28,7 +37,7 @@ MachineAndReference render_with_reference(const traces::CommandStream& stream,
   ref::Options options;
   options.mode = ref::Mode::kGiven;
   options.precision = {precision.subpixel_bits, precision.subtexel_bits, precision.lod_bits,
-                       precision.ellipse_axis};
+                       anisotropy(precision.anisotropic_footprint)};
   const auto observe = [&](const pipeline::RasterizedPiece& t) { options.given.push_back(given(t)); };
   MachineAndReference both;
   both.machine = pipeline::render_functional_frame(stream, precision, observe).image;

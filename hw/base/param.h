@@ -123,8 +123,8 @@ class Choice final : public ParamBase {
 
  public:
   Choice(ParamGroup& group, std::string_view name, E value, std::initializer_list<std::string_view> words,
-         std::string_view reason)
-      : ParamBase(name, "", reason, Effect::kTradeOff), value_(value), default_(value), words_(words) {
+         std::string_view reason, Effect effect = Effect::kTradeOff)
+      : ParamBase(name, "", reason, effect), value_(value), default_(value), words_(words) {
     group.add(*this);
   }
   operator E() const {  // NOLINT(google-explicit-constructor): a parameter reads as its value

@@ -23,13 +23,17 @@ namespace quadrille::models::reference {
 
 enum class Mode : std::uint8_t { kGiven, kIdeal };
 
+/// What an anisotropic filter takes: samples along a pixel's longer difference or along the longer axis of its
+/// ellipse, or the texels within the ellipse by their weights.
+enum class Anisotropy : std::uint8_t { kLongerDifference, kEllipseAxis, kEllipse };
+
 /// Fractional bits, used in mode *given* only. Values are rounded to nearest, ties up (floor(x * 2^bits +
 /// 0.5)).
 struct Precision {
   int subpixel_bits = 8;  ///< of `GivenTriangle::x`, `y`
   int subtexel_bits = 8;  ///< of a texel coordinate, so of the bilinear weights
   int lod_bits = 8;       ///< of the level of detail, so of the weight between two mip levels
-  bool ellipse = false;   ///< anisotropic samples lie along the longer axis of the pixel's ellipse
+  Anisotropy anisotropy = Anisotropy::kLongerDifference;
 };
 
 /// A triangle, line or point in window space as the machine rasterised it (after clipping and snapping;

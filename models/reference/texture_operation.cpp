@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/reference/ellipse.h"
+
 namespace quadrille::models::reference {
 namespace {
 
@@ -93,33 +95,42 @@ Place place_of(const TextureView& texture, const TextureQuestion& q) {
 
 double squared(const Vector& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
 
-/// Samples along an axis (in texture sizes), and the level of detail of each.
+/// Samples along an axis (in texture sizes), and the level of detail of each; or the texels of an ellipse.
 struct Footprint {
   double lambda = 0;
   int samples = 1;
   std::array<double, 2> axis{};
+  bool ellipse = false;
 };
 
+Anisotropy anisotropy_of(const TextureView& texture) {
+  return texture.precision != nullptr ? texture.precision->anisotropy : Anisotropy::kLongerDifference;
+}
+
+double most_anisotropy(const TextureView& texture) {
+  return std::min(static_cast<double>(texture.sampler->max_anisotropy), 16.0);
+}
+
 Footprint footprint_of(const TextureView& texture, const TextureQuestion& q, const Place& place) {
-  if (q.level) return {finite_or_zero(*q.level), 1, {}};
+  if (q.level) return {finite_or_zero(*q.level)};
   double long2 = std::max(squared(place.along_x), squared(place.along_y));
   if (!is_anisotropic(*texture.sampler) || place_dimensions(texture.kind) != 2)
-    return {0.5 * std::log2(long2), 1, {}};
+    return {0.5 * std::log2(long2)};
+  const double most = most_anisotropy(texture);
   const double x2 = squared(place.along_x), y2 = squared(place.along_y);
   double short2 = std::min(x2, y2);
   const Vector& longer = x2 >= y2 ? place.along_x : place.along_y;
   std::array<double, 2> axis{longer[0], longer[1]};
-  if (texture.precision != nullptr && texture.precision->ellipse) {
-    const double c = place.along_x[0] * place.along_y[0] + place.along_x[1] * place.along_y[1];
-    const double angle = 0.5 * std::atan2(2 * c, x2 - y2);
-    for (std::size_t k = 0; k < 2; ++k)
-      axis.at(k) = std::cos(angle) * place.along_x.at(k) + std::sin(angle) * place.along_y.at(k);
-    const double area = place.along_x[0] * place.along_y[1] - place.along_x[1] * place.along_y[0];
-    long2 = axis[0] * axis[0] + axis[1] * axis[1];
-    short2 = long2 > 0 ? area * area / long2 : 0;
+  if (anisotropy_of(texture) != Anisotropy::kLongerDifference) {
+    const EllipseAxes axes =
+        ellipse_axes({place.along_x[0], place.along_x[1]}, {place.along_y[0], place.along_y[1]});
+    if (anisotropy_of(texture) == Anisotropy::kEllipse)
+      return {std::log2(std::max(std::sqrt(short2), axes.longer / most)), 1, {}, true};
+    axis = {axes.longer * axes.direction[0], axes.longer * axes.direction[1]};
+    long2 = axes.longer * axes.longer;
+    short2 = axes.shorter * axes.shorter;
   }
   Footprint f;
-  const double most = std::min(static_cast<double>(texture.sampler->max_anisotropy), 16.0);
   const double ratio = long2 <= 1 ? 1.0 : short2 > 0 ? std::min(std::sqrt(long2 / short2), most) : most;
   f.samples = std::max(1, static_cast<int>(std::ceil(ratio - kRatioSlack)));
   f.lambda = 0.5 * std::log2(long2) - std::log2(ratio);
@@ -259,6 +270,37 @@ Texel mean_in_level(const TextureView& texture, const TextureQuestion& q, const 
   return sum;
 }
 
+/// The texels of a level within the pixel's ellipse, by their weights.
+Texel mean_in_ellipse(const TextureView& texture, const TextureQuestion& q, const Place& place,
+                      std::uint32_t level) {
+  const std::array<std::int64_t, 3> sizes = sizes_of(texture, level), finest = sizes_of(texture, 0);
+  Change x{}, y{};
+  Change centre{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double part = static_cast<double>(sizes.at(k)) / static_cast<double>(finest.at(k));
+    x.at(k) = place.along_x.at(k) * part;
+    y.at(k) = place.along_y.at(k) * part;
+    centre.at(k) = place.at.at(k) * static_cast<double>(sizes.at(k)) - 0.5;
+  }
+  const EllipseAxes ellipse = filtered_ellipse(ellipse_axes(x, y), most_anisotropy(texture));
+  const auto reach = static_cast<std::int64_t>(std::ceil(ellipse.longer)) + 1;
+  const std::int64_t column = floor_index(centre[0]), row = floor_index(centre[1]);
+  Texel sum{};
+  double weights = 0;
+  for (std::int64_t j = row - reach; j <= row + reach; ++j)
+    for (std::int64_t i = column - reach; i <= column + reach; ++i) {
+      const double weight =
+          ellipse_weight(ellipse, static_cast<double>(i) - centre[0], static_cast<double>(j) - centre[1]);
+      if (weight == 0) continue;
+      const Texel texel =
+          compared(texture, q, texel_at(texture, level, i + q.offset[0], j + q.offset[1], place.slice));
+      weights += weight;
+      for (std::size_t c = 0; c < 4; ++c) sum.at(c) += weight * texel.at(c);
+    }
+  for (double& c : sum) c /= weights;
+  return sum;
+}
+
 /// The level that a lambda reads: the finer one, and how much of the next.
 double level_read(const TextureView& texture, double lambda) {
   const double level = std::clamp(lambda, 0.0, static_cast<double>(texture.levels - 1));
@@ -274,6 +316,7 @@ Texel filtered_texel(const TextureView& texture, const TextureQuestion& q) {
   const traces::Filter filter = lambda <= 0 ? texture.sampler->mag : texture.sampler->min;
   const double level = level_read(texture, lambda);
   const auto finer = static_cast<std::uint32_t>(level);
+  if (f.ellipse) return mean_in_ellipse(texture, q, place, finer);
   const double weight = level - std::floor(level);
   const Texel a = mean_in_level(texture, q, place, f, finer, filter);
   return weight == 0 ? a : mix(a, mean_in_level(texture, q, place, f, finer + 1, filter), weight);

@@ -72,6 +72,23 @@ void OperationPlaces::change_of(std::size_t k, std::size_t first, __m256& along_
   along_y = _mm256_load_ps(y.data());
 }
 
+bool OperationPlaces::stretches() const {
+  return is_anisotropic(sampler_) && dimensions_ == 2 && operation_.level != LevelFrom::kLevel;
+}
+
+float OperationPlaces::most_anisotropy() const { return std::min(sampler_.max_anisotropy, kMaxAnisotropy); }
+
+bool OperationPlaces::takes_ellipses() const {
+  return stretches() && operation_.ask == TextureAsk::kSample &&
+         precision_.anisotropic_footprint == AnisotropicFootprint::kEllipse;
+}
+
+TexelEllipse OperationPlaces::ellipse_of(std::size_t lane, std::int32_t width, std::int32_t height) const {
+  const float across = static_cast<float>(width) / size(0), down = static_cast<float>(height) / size(1);
+  return texel_ellipse({along_x_[0][lane] * across, along_x_[1][lane] * down},
+                       {along_y_[0][lane] * across, along_y_[1][lane] * down}, most_anisotropy());
+}
+
 bool OperationPlaces::needs_changes() const {
   return operation_.level != LevelFrom::kLevel && operation_.ask != TextureAsk::kGather;
 }
@@ -147,7 +164,7 @@ void OperationPlaces::level_of_detail(std::size_t first, std::array<float, kWarp
   };
   const __m256 half = _mm256_set1_ps(0.5f);
   __m256 base = _mm256_mul_ps(unit_log2(limited(_mm256_max_ps(x2, y2)), precision_), half);
-  if (is_anisotropic(sampler_) && dimensions_ == 2) base = stretch(first, limited(x2), limited(y2), samples);
+  if (stretches()) base = stretch(first, limited(x2), limited(y2), samples);
   const __m256 bias = operation_.level == LevelFrom::kBias
                           ? finite_or_zero(load(request_.word(static_cast<std::size_t>(words_.level)), first))
                           : zero;
@@ -156,25 +173,31 @@ void OperationPlaces::level_of_detail(std::size_t first, std::array<float, kWarp
 }
 
 /// Samples and their line, of pixels whose footprint is longer one way than the other; lambda is that of the
-/// shorter way, as far as so many samples allow. A footprint within a texel takes one.
+/// shorter way, as far as so many samples allow. A footprint within a texel takes one. Of ellipses there is
+/// only lambda: that of the shorter difference, or where the ellipse is widened more, of its shorter axis.
 __m256 OperationPlaces::stretch(std::size_t first, __m256 x2, __m256 y2,
                                 std::array<float, kWarpLanes>& samples) {
   const __m256 x_longer = _mm256_cmp_ps(x2, y2, _CMP_GE_OQ);
-  __m256 long2 = _mm256_max_ps(x2, y2), short2 = _mm256_min_ps(x2, y2);
+  const __m256 shorter2 = _mm256_min_ps(x2, y2);
+  __m256 long2 = _mm256_max_ps(x2, y2), short2 = shorter2;
   const __m256 along[2][2] = {{load(along_x_[0], first), load(along_y_[0], first)},
                               {load(along_x_[1], first), load(along_y_[1], first)}};
   __m256 line[2];
   for (std::size_t k = 0; k < 2; ++k) line[k] = _mm256_blendv_ps(along[k][1], along[k][0], x_longer);
-  if (precision_.ellipse_axis) ellipse(along, x2, y2, line, long2, short2);
-  const __m256 most = _mm256_set1_ps(std::min(sampler_.max_anisotropy, kMaxAnisotropy)),
-               one = _mm256_set1_ps(1.0f);
+  if (precision_.anisotropic_footprint != AnisotropicFootprint::kLongerDifference)
+    ellipse(along, x2, y2, line, long2, short2);
+  const __m256 most = _mm256_set1_ps(most_anisotropy()), one = _mm256_set1_ps(1.0f),
+               half = _mm256_set1_ps(0.5f);
+  if (precision_.anisotropic_footprint == AnisotropicFootprint::kEllipse) {
+    const __m256 least2 = _mm256_div_ps(long2, _mm256_mul_ps(most, most));
+    return _mm256_mul_ps(unit_log2(_mm256_max_ps(shorter2, least2), precision_), half);
+  }
   const __m256 within = _mm256_cmp_ps(long2, one, _CMP_LE_OQ);
   const __m256 ratio =
       _mm256_blendv_ps(_mm256_min_ps(_mm256_sqrt_ps(_mm256_div_ps(long2, short2)), most), one, within);
   const __m256 count = _mm256_max_ps(_mm256_ceil_ps(_mm256_sub_ps(ratio, _mm256_set1_ps(kRatioSlack))), one);
   _mm256_storeu_ps(samples.data() + first, count);
   for (std::size_t k = 0; k < 2; ++k) store(axis[k], first, _mm256_div_ps(line[k], _mm256_set1_ps(size(k))));
-  const __m256 half = _mm256_set1_ps(0.5f);
   return _mm256_sub_ps(_mm256_mul_ps(unit_log2(long2, precision_), half), unit_log2(ratio, precision_));
 }
 

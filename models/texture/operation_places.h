@@ -6,6 +6,7 @@
 #include "models/precision.h"
 #include "models/shader/warp.h"
 #include "models/texture/cube.h"
+#include "models/texture/ellipse_texels.h"
 #include "models/texture/layout.h"
 
 #include <immintrin.h>
@@ -47,6 +48,10 @@ class OperationPlaces {
   void find();
   /// Then fills the levels of detail; with anisotropy, `axis` and how many samples lie along it.
   void find_levels(std::array<float, kWarpLanes>& samples);
+  /// Do lanes take the texels of an ellipse, in place of samples?
+  [[nodiscard]] bool takes_ellipses() const;
+  /// A lane's, in a level of such a size.
+  [[nodiscard]] TexelEllipse ellipse_of(std::size_t lane, std::int32_t width, std::int32_t height) const;
 
   std::array<LaneFloats, 3> place;   ///< in texture sizes; of a cube, on the face
   LaneInts slice;                    ///< layer, face or both
@@ -56,6 +61,8 @@ class OperationPlaces {
  private:
   [[nodiscard]] float size(std::size_t k) const;
   [[nodiscard]] bool needs_changes() const;
+  [[nodiscard]] bool stretches() const;
+  [[nodiscard]] float most_anisotropy() const;
   void change_of(std::size_t k, std::size_t first, __m256& along_x, __m256& along_y) const;
   void find_group(std::size_t first);
   [[nodiscard]] __m256i layer_of(std::size_t first) const;

@@ -3,9 +3,11 @@
 ///
 /// Everything is decided lane by lane or quad by quad: which other quads share the warp changes nothing.
 /// A footprint is a 2x2 of one slice; a level of a lane has one, or two in a volume, or one for each sample
-/// along the longer axis of its pixel's footprint.
+/// along the longer axis of its pixel's footprint. Where a lane takes the texels of an ellipse, its footprints
+/// are the 2x2 that hold them; of the level that it reads, or the finer one of two.
 #include "models/base/error.h"
 #include "models/texture/cube.h"
+#include "models/texture/ellipse_taps.h"
 #include "models/texture/level_of_detail.h"
 #include "models/texture/operation_places.h"
 #include "models/texture/plan_parts.h"
@@ -14,13 +16,17 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 
 namespace quadrille::models {
 namespace {
 
 /// Wraps an index however far it is outside.
 __m256i wrap_far(__m256i index, __m256i size, Wrap wrap) {
-  if (wrap != Wrap::kRepeat && wrap != Wrap::kMirroredRepeat) return wrap_texel(index, size, wrap);
+  const __m256i near =
+      _mm256_andnot_si256(_mm256_cmpgt_epi32(index, size), _mm256_cmpgt_epi32(index, _mm256_set1_epi32(-2)));
+  const bool repeats = wrap == Wrap::kRepeat || wrap == Wrap::kMirroredRepeat;
+  if (!repeats || bits_of(near) == 0xff) return wrap_texel(index, size, wrap);
   alignas(32) std::array<std::int32_t, kGroupLanes> i, n;
   store_lanes(i.data(), index);
   store_lanes(n.data(), size);
@@ -46,8 +52,8 @@ class OperationPlanner {
         words_(places_.words()),
         dimensions_(static_cast<std::size_t>(place_dimensions(view.kind))),
         shifted_(operation_.offsets || operation_.offset != TextureOperation{}.offset),
-        lines_((start(view, sampler, request, plan), plan)),
-        blocks_(plan, TexturePlan::kMaxBlocks) {}
+        lines_((start(view, sampler, request, places_.takes_ellipses(), plan), plan)),
+        blocks_(plan, plan.weighed ? TexturePlan::kMaxBlocks : TexturePlan::kSampledBlocks) {}
 
   void run() {
     plan_.ask = operation_.ask;
@@ -66,9 +72,10 @@ class OperationPlanner {
 
  private:
   static void start(const TextureView& view, const SamplerState& sampler, const TextureRequest& request,
-                    TexturePlan& plan) {
+                    bool weighed, TexturePlan& plan) {
     begin_plan(view, sampler, request, true, plan);
     plan.kind = view.kind;
+    plan.weighed = weighed;
     plan.magnified_lanes = plan.minified_lanes = 0;
     plan.slices = view.kind == ViewKind::k3D;
     plan.levels.fill(0);
@@ -87,7 +94,7 @@ class OperationPlanner {
 
   void sample(const LaneLevels& levels) {
     plan_.finer_level = levels.finer;
-    plan_.level_weight = levels.weight;
+    if (!plan_.weighed) plan_.level_weight = levels.weight;
     plan_.magnified_lanes = static_cast<std::uint32_t>(std::popcount(request_.active & levels.magnified));
     plan_.minified_lanes = static_cast<std::uint32_t>(std::popcount(request_.active & ~levels.magnified));
     const LaneMask nearest = (sampler_.mag == Filter::kNearest ? levels.magnified : 0) |
@@ -96,6 +103,11 @@ class OperationPlanner {
       const std::size_t first = kGroupLanes * group;
       const std::uint32_t active = request_.active >> first & 0xff;
       if (active == 0) continue;
+      if (plan_.weighed) {
+        plan_.levels[group] = 1;
+        ellipses(group, load_lanes(levels.finer.data() + first), active);
+        continue;
+      }
       int taps = plan_.slices ? 2 : 1;
       for (std::size_t lane = first; lane < first + kGroupLanes; ++lane)
         if ((request_.active >> lane & 1) != 0) taps = std::max(taps, static_cast<int>(plan_.samples[lane]));
@@ -132,10 +144,49 @@ class OperationPlanner {
     }
   }
 
+  /// The centre of a lane's ellipse along an axis, in texels of a level of that size. Where the image does not
+  /// repeat, it is held where no ellipse reaches more of the image than it would from farther away.
+  [[nodiscard]] static float centre(float place, std::int32_t size, Wrap wrap) {
+    constexpr float kFar = 64.0f;
+    const bool repeats = wrap == Wrap::kRepeat || wrap == Wrap::kMirroredRepeat;
+    const float folded = repeats ? _mm256_cvtss_f32(fold_coordinate(_mm256_set1_ps(place), wrap)) : place;
+    const auto texels = static_cast<float>(size);
+    return std::clamp(folded * texels - 0.5f, -texels - kFar, 2.0f * texels + kFar);
+  }
+
+  /// All footprints of a group's ellipses; each lane has as many as it needs.
+  void ellipses(std::size_t group, __m256i level, std::uint32_t used) {
+    const std::size_t first = kGroupLanes * group;
+    alignas(32) std::array<std::int32_t, kGroupLanes> levels;
+    store_lanes(levels.data(), level);
+    EllipseTaps taps(plan_.weight[group]);
+    std::array<EllipseFootprint, kMaxEllipseFootprints> of_lane;
+    for (std::size_t lane = 0; lane < kGroupLanes; ++lane) {
+      if ((used >> lane & 1) == 0) continue;
+      const auto l = static_cast<std::size_t>(levels[lane]);
+      const std::int32_t width = view_.layout.width[l], height = view_.layout.height[l];
+      const float x = centre(places_.place[0][first + lane], width, sampler_.wrap_u),
+                  y = centre(places_.place[1][first + lane], height, sampler_.wrap_v);
+      const int count = ellipse_footprints(places_.ellipse_of(first + lane, width, height), x, y, of_lane);
+      taps.add(lane, std::span(of_lane).first(static_cast<std::size_t>(count)));
+    }
+    plan_.taps[group] = static_cast<std::uint8_t>(taps.count());
+    const LevelVectors at = level_vectors(view_.layout, level, 0xff);
+    for (std::size_t tap = 0; tap < taps.count(); ++tap)
+      footprint(group, 0, tap, level, at, moved(pair_from(taps.column(tap)), 0, first),
+                moved(pair_from(taps.row(tap)), 1, first), taps.lanes(tap), 0);
+  }
+  /// A texel and the next one.
+  [[nodiscard]] static AxisTexels pair_from(__m256i texel) {
+    return {texel, _mm256_add_epi32(texel, _mm256_set1_epi32(1)), _mm256_setzero_si256()};
+  }
+
   /// The axis' texels, moved by the operation's offset along it.
   [[nodiscard]] AxisTexels texels_along(std::size_t axis, std::size_t first, __m256 c, __m256i size,
                                         Wrap wrap, std::uint32_t nearest) const {
-    AxisTexels t = axis_texels(fold_coordinate(c, wrap), size, precision_.subtexel_bits, nearest);
+    return moved(axis_texels(fold_coordinate(c, wrap), size, precision_.subtexel_bits, nearest), axis, first);
+  }
+  [[nodiscard]] AxisTexels moved(AxisTexels t, std::size_t axis, std::size_t first) const {
     if (!shifted_ || axis >= dimensions_ || is_cube(view_.kind)) return t;
     const __m256i by = offset(axis, first);
     t.first = _mm256_add_epi32(t.first, by);
@@ -158,18 +209,24 @@ class OperationPlanner {
   }
 
   [[nodiscard]] AxisTexels wrapped_texels(const AxisTexels& t, __m256i size, Wrap wrap) const {
-    if (!shifted_) return wrapped(t, size, wrap);
+    if (!shifted_ && !plan_.weighed) return wrapped(t, size, wrap);
     return {wrap_far(t.first, size, wrap), wrap_far(t.second, size, wrap), t.weight};
   }
 
   void footprint(std::size_t group, std::size_t which, std::size_t tap, __m256i level, __m256 u, __m256 v,
                  std::uint32_t lanes, std::uint32_t nearest) {
     const std::size_t first = kGroupLanes * group;
-    TexturePlan::Footprint& out = plan_.footprint[group][which * plan_.taps[group] + tap];
     // Of unused lanes too, each lane's own level: slices start by level, and what is read lies in the image.
     const LevelVectors at = level_vectors(view_.layout, level, 0xff);
-    const AxisTexels columns = texels_along(0, first, u, at.width, sampler_.wrap_u, nearest),
-                     rows = texels_along(1, first, v, at.height, sampler_.wrap_v, nearest);
+    footprint(group, which, tap, level, at, texels_along(0, first, u, at.width, sampler_.wrap_u, nearest),
+              texels_along(1, first, v, at.height, sampler_.wrap_v, nearest), lanes, nearest);
+  }
+
+  void footprint(std::size_t group, std::size_t which, std::size_t tap, __m256i level, const LevelVectors& at,
+                 const AxisTexels& columns, const AxisTexels& rows, std::uint32_t lanes,
+                 std::uint32_t nearest) {
+    const std::size_t first = kGroupLanes * group;
+    TexturePlan::Footprint& out = plan_.footprint[group][which * plan_.taps[group] + tap];
     const AxisTexels x = wrapped_texels(columns, at.width, sampler_.wrap_u),
                      y = wrapped_texels(rows, at.height, sampler_.wrap_v);
     out.border = has_border(sampler_) ? beyond_border(sampler_, at, columns, rows) : 0;

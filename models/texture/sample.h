@@ -15,6 +15,7 @@
 #include "models/memory/device_memory.h"
 #include "models/precision.h"
 #include "models/shader/warp.h"
+#include "models/texture/ellipse_taps.h"
 #include "models/texture/layout.h"
 
 #include <array>
@@ -39,11 +40,13 @@ struct DecodedLine {
 /// Addresses and weights of one request; its memory is used again and again, nothing is allocated.
 struct TexturePlan {
   static constexpr int kGroups = 4;  ///< lanes in groups of 8
-  /// footprints of a group: two levels of 16 samples, or of two slices
-  static constexpr int kMaxTaps = 32;
+  /// footprints of a group: two levels of 16 samples or of two slices, or those of an ellipse
+  static constexpr int kMaxTaps = kMaxEllipseFootprints;
   static constexpr int kMaxTexels = kWarpLanes * kMaxTaps * 4;
   static constexpr int kMaxLines = kMaxTexels * 4;  ///< where the components of a texel lie apart
   static constexpr int kMaxBlocks = kMaxTexels;
+  /// of plans without an ellipse: 32 lanes x 2 levels x 16 samples x 4 texels
+  static constexpr int kSampledBlocks = kWarpLanes * 2 * 16 * 4;
   /// of plans of one plane without anisotropy: 32 lanes x 2 levels x 4 texels
   static constexpr int kPlainBlocks = kWarpLanes * 2 * 4;
 
@@ -81,10 +84,12 @@ struct TexturePlan {
   std::uint8_t component = 0;  ///< that a gather takes
   bool compares = false;
   CompareOp compare = CompareOp::kNever;
-  /// footprints of a level: samples along an axis, or slices
+  /// footprints of a level: samples along an axis, slices, or those of an ellipse
   std::array<std::uint8_t, kGroups> taps{};
-  bool slices = false;                                    ///< taps are two slices of a volume
-  alignas(32) std::array<float, kWarpLanes> samples;      ///< taps that count for the lane
+  bool slices = false;   ///< taps are two slices of a volume
+  bool weighed = false;  ///< taps are an ellipse's, and each corner of a footprint has its own weight
+  std::array<EllipseTaps::Weights, kGroups> weight;   ///< of what is weighed; 0: the texel counts for nothing
+  alignas(32) std::array<float, kWarpLanes> samples;  ///< taps that count for the lane
   alignas(32) std::array<LaneFloats, 2> slice_weight;     ///< of the second slice, by level
   alignas(32) LaneFloats reference;                       ///< to compare with
   alignas(32) std::array<LaneFloats, 2> level_of_detail;  ///< what kQueryLod answers

@@ -141,6 +141,31 @@ LaneColor filter_any(const TexturePlan& plan, std::size_t group, const TexturePl
   return color;
 }
 
+/// The mean of an ellipse's texels by their weights. What has no weight counts for nothing, also where it is
+/// infinite.
+LaneColor filter_ellipse(const TexturePlan& plan, std::size_t group, const TexelSource& source) {
+  const __m256 zero = _mm256_setzero_ps();
+  LaneColor sum{{zero, zero, zero, zero}};
+  __m256 weights = zero;
+  for (std::size_t tap = 0; tap < plan.taps[group]; ++tap) {
+    TexelColors corner[4];
+    for (std::size_t i = 0; i < 4; ++i) corner[i] = fetch_colors(plan, plan.footprint[group][tap], i, source);
+    if (plan.compares) compare_corners(plan, group, format_info(source.format), corner);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const __m256 weight = _mm256_loadu_ps(plan.weight[group][tap][i].data());
+      const __m256 counts = _mm256_cmp_ps(weight, zero, _CMP_GT_OQ);
+      weights = _mm256_add_ps(weights, weight);
+      for (std::size_t c = 0; c < 4; ++c)
+        sum.channel[c] =
+            _mm256_add_ps(sum.channel[c], _mm256_and_ps(counts, _mm256_mul_ps(corner[i][c], weight)));
+    }
+  }
+  // Lanes without an ellipse have no weights.
+  weights = _mm256_blendv_ps(_mm256_set1_ps(1.0f), weights, _mm256_cmp_ps(weights, zero, _CMP_GT_OQ));
+  for (__m256& channel : sum.channel) channel = _mm256_div_ps(channel, weights);
+  return sum;
+}
+
 /// Which of the ways above: the two for RGBA8 are the fast ones. Of BGRA8, red and blue are exchanged.
 enum class Way : std::uint8_t { kUnorm, kSrgb, kAny };
 
@@ -150,12 +175,12 @@ Way way_of(Format format) {
   return format == Format::kR8G8B8A8Srgb || format == Format::kB8G8R8A8Srgb ? Way::kSrgb : Way::kAny;
 }
 
-/// A cube's corners, comparisons and borders of an own colour are done with numbers. So that no lane's way
+/// A cube's corners, comparisons, ellipses and borders of an own colour are done with numbers. So that no lane's way
 /// depends on another's, all of such plans is.
 Way way_of(const TexturePlan& plan, Format format) {
-  const bool numbers =
-      plan.border == BorderColor::kOwn ||
-      (plan.general && (plan.compares || is_cube(plan.kind) || plan.ask != TextureAsk::kSample));
+  const bool numbers = plan.border == BorderColor::kOwn ||
+                       (plan.general && (plan.compares || plan.weighed || is_cube(plan.kind) ||
+                                         plan.ask != TextureAsk::kSample));
   return numbers ? Way::kAny : way_of(format);
 }
 
@@ -171,6 +196,8 @@ LaneColor filter_tap(const TexturePlan& plan, std::size_t group, std::size_t tap
 template <Way way>
 LaneColor filter_level(const TexturePlan& plan, std::size_t group, std::size_t level,
                        const TexelSource& source) {
+  if constexpr (way == Way::kAny)
+    if (plan.general && plan.weighed) return filter_ellipse(plan, group, source);
   const std::size_t taps = plan.general ? plan.taps[group] : 1;
   LaneColor color = filter_tap<way>(plan, group, level * taps, source);
   if (taps == 1) return color;

@@ -90,13 +90,16 @@ struct GpuParams : hw::ParamGroup {
       "",
       "Level of detail by a log2 that is linear between powers of two. [M: Mesa's lavapipe does so]",
       hw::Effect::kPicture};
-  hw::Param<bool> ellipse_axis{
+  hw::Choice<models::AnisotropicFootprint> anisotropic_footprint{
       *this,
-      "ellipse_axis",
-      false,
-      "",
-      "Anisotropic samples along the longer axis of a pixel's ellipse; else along its longer difference. [P: "
-      "Heckbert 1989]",
+      "anisotropic_footprint",
+      models::AnisotropicFootprint::kLongerDifference,
+      {"longer_difference", "ellipse_axis", "ellipse"},
+      "What an anisotropic filter takes: samples along a pixel's longer difference, as in Vulkan's "
+      "equations, "
+      "or along the longer axis of its ellipse, or the texels within the ellipse by their weights. [P: "
+      "Heckbert "
+      "1989]",
       hw::Effect::kPicture};
 };
 
@@ -200,7 +203,7 @@ class MachineConfig {
   /// Checks that hold between parameters.
   void check() const;
   [[nodiscard]] models::Precision precision() const {
-    return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits, gpu.linear_log2, gpu.ellipse_axis};
+    return {gpu.subpixel_bits, gpu.subtexel_bits, gpu.lod_bits, gpu.linear_log2, gpu.anisotropic_footprint};
   }
   /// What a frame in its memory depends on.
   [[nodiscard]] FrameTarget frame_target() const { return {shader_target(), texture.layout.value()}; }

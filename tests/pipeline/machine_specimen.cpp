@@ -63,9 +63,9 @@ std::uint64_t image_digest(const DeviceFrame& frame) {
   return hash;
 }
 
-std::uint64_t functional_digest(const traces::CommandStream& stream) {
+std::uint64_t functional_digest(const traces::CommandStream& stream, const models::Precision& precision) {
   DeviceFrame frame(std::uint64_t{1} << 30);
-  build_frame(stream, {}, frame);
+  build_frame(stream, precision, frame);
   (void)render_functional(frame.frame, frame.memory);
   return image_digest(frame);
 }
@@ -87,8 +87,10 @@ std::string faults_of(const hw::contract::Outcome& outcome, std::uint64_t digest
 
 std::string machine_faults(const traces::CommandStream& stream, std::uint64_t machine_seed,
                            const hw::contract::Variation& variation) {
+  MachineConfig machine;
+  if (machine_seed != 0) randomize(machine, machine_seed);
   return faults_of(hw::contract::run_forked(machine_builder(stream, machine_seed), variation),
-                   functional_digest(stream));
+                   functional_digest(stream, machine.precision()));
 }
 
 std::string refusal(const traces::CommandStream& stream) {

@@ -12,8 +12,9 @@ namespace quadrille::pipeline::test {
 
 /// Checksum of colour and depth.
 [[nodiscard]] std::uint64_t image_digest(const DeviceFrame& frame);
-/// The same for the functional rendering of a stream.
-[[nodiscard]] std::uint64_t functional_digest(const traces::CommandStream& stream);
+/// The same for the functional rendering of a stream, in such precisions.
+[[nodiscard]] std::uint64_t functional_digest(const traces::CommandStream& stream,
+                                              const models::Precision& precision = {});
 
 /// What is said of a stream that is not valid, or that cannot be drawn functionally; empty if it can.
 [[nodiscard]] std::string refusal(const traces::CommandStream& stream);

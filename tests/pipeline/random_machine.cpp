@@ -54,6 +54,7 @@ void randomize(MachineConfig& config, std::uint64_t seed) {
   config.texture.tag_banks.set(std::array{1, 2, 4, 16}[seed / 3 % 4]);
   config.texture.fetched_sectors.set(static_cast<hw::FetchedSectors>(seed / 4 % 3));
   config.texture.blocks_held.set(static_cast<hw::BlocksHeld>(seed / 3 % 2));
+  config.gpu.anisotropic_footprint.set(static_cast<models::AnisotropicFootprint>(seed / 2 % 3));
   config.texture.decode_blocks_per_clk.set(1 + static_cast<int>(seed % 8));
   config.rop.compression.set(static_cast<hw::ColorCompression>(seed / 2 % 3));
   config.vertex_fetch.reuse.set(

@@ -24,6 +24,8 @@ double worst(const studies::MachineAndReference& pictures) {
   return most;
 }
 
+constexpr models::Precision kEllipse{.anisotropic_footprint = models::AnisotropicFootprint::kEllipse};
+
 }  // namespace
 
 TEST_CASE("texture cards: every format has the reference's numbers with each filter and wrap") {
@@ -52,14 +54,39 @@ TEST_CASE("texture cards: every operation on every kind of image has the referen
 }
 
 TEST_CASE("texture cards: samples along an axis are the reference's, by either axis") {
-  for (const bool ellipse : {false, true})
+  for (const auto footprint :
+       {models::AnisotropicFootprint::kLongerDifference, models::AnisotropicFootprint::kEllipseAxis})
     for (const TextureCard& card : anisotropy_cards()) {
-      models::Precision precision;
-      precision.ellipse_axis = ellipse;
-      const auto pictures = studies::render_with_reference(card_stream(card), precision);
-      INFO(name_of(card) << " up to " << card.sampler.max_anisotropy << (ellipse ? " ellipse" : ""));
+      const auto pictures =
+          studies::render_with_reference(card_stream(card), {.anisotropic_footprint = footprint});
+      INFO(name_of(card) << " up to " << card.sampler.max_anisotropy << ", " << static_cast<int>(footprint));
       CHECK(worst(pictures) <= 2.0 / 255.0);
     }
+}
+
+TEST_CASE("texture cards: the texels of an ellipse are the reference's") {
+  for (std::size_t wrap = 0; wrap <= static_cast<std::size_t>(models::kLastWrap); ++wrap)
+    for (TextureCard& card : anisotropy_cards()) {
+      card.sampler.wrap_u = static_cast<traces::Wrap>(wrap);
+      card.sampler.wrap_v = static_cast<traces::Wrap>((2 * wrap + 1) % 5);
+      card.sampler.border = models::BorderColor::kOpaqueWhite;
+      const auto pictures = studies::render_with_reference(card_stream(card), kEllipse);
+      INFO(name_of(card) << " up to " << card.sampler.max_anisotropy << ", wrap " << wrap);
+      CHECK(worst(pictures) <= 0.5 / 255.0);
+    }
+}
+
+TEST_CASE("texture cards: every operation on planes takes an ellipse's texels as the reference does") {
+  std::size_t planes = 0;
+  for (TextureCard& card : operation_cards()) {
+    if (models::place_dimensions(card.view) != 2 || card.sampler.min == models::Filter::kNearest) continue;
+    card.sampler.max_anisotropy = 16;
+    card.sampler.mip = planes % 2 == 0 ? models::Filter::kLinear : models::Filter::kNearest;
+    ++planes;
+    INFO(name_of(card));
+    CHECK(worst(studies::render_with_reference(card_stream(card), kEllipse)) <= card_tolerance(card));
+  }
+  CHECK(planes > 20);
 }
 
 TEST_CASE("texture cards: without seams joined, a cube's face ends at its own edge, as in the reference") {

@@ -408,8 +408,9 @@ TEST_CASE("sample: a footprint takes as many samples as it is longer than wide, 
     }
     SamplerState sampler;
     sampler.max_anisotropy = most;
-    for (const bool ellipse : {false, true}) {
-      plan_texture(view, sampler, r, {.ellipse_axis = ellipse}, *plan);
+    for (const auto footprint :
+         {AnisotropicFootprint::kLongerDifference, AnisotropicFootprint::kEllipseAxis}) {
+      plan_texture(view, sampler, r, {.anisotropic_footprint = footprint}, *plan);
       INFO(x << " x " << y << " texels, at most " << most << " samples");
       CHECK(plan->bilinear_quads == 8 * samples);
       CHECK(plan->texels == 128 * samples);
