@@ -6,7 +6,8 @@
 /// A texture's tile of 4 KiB is 32x32 texels (4x8 lines, row by row). The bits of a texel's index within it
 /// are, from the least: x0 x1 y0 x2 y1 x3 x4 y2 y3 y4. An attachment that is sampled lies as it was drawn, in
 /// tiles of 8x8 pixels that are quad-major (memory/surface.h): x0 y0 x1 x2 y1 y2. Tiles are row by row. So an
-/// address is a sum of a part of x and one of y.
+/// address is a sum of a part of x and one of y. Of several samples a pixel the planes of a tile follow each
+/// other, and the sample adds a part of its own.
 ///
 /// A texture of compressed blocks lies as one whose texels were the blocks: a tile is 32x32 blocks. Its
 /// texels are counted row by row within a block, and a block has as many places as the next power of two: 16
@@ -60,7 +61,9 @@ struct TextureLayout {
   std::uint64_t bytes = 0;                         ///< whole chain; a multiple of a line
   /// log2 of the texels from a tile of a surface to the next
   int tile_shift = 6;
-  BlockPlaces blocks;  ///< 1x1 but where `tiling` is that of blocks
+  std::uint32_t samples = 1;  ///< a texel, of a surface
+  int plane_shift = 6;        ///< log2 of the texels from a sample's plane of a tile to the next
+  BlockPlaces blocks;         ///< 1x1 but where `tiling` is that of blocks
 
   [[nodiscard]] static constexpr std::uint32_t x_part(std::uint32_t x) {
     return (x & 3) | (x & 4) << 1 | (x & 24) << 2 | (x >> 5) << 10;
@@ -74,7 +77,10 @@ struct TextureLayout {
   [[nodiscard]] static constexpr std::uint32_t surface_y_part_in_tile(std::uint32_t y) {
     return (y & 1) << 1 | (y & 6) << 3;
   }
-  /// Index of a texel within the chain.
+  [[nodiscard]] constexpr std::uint32_t sample_part(std::uint32_t sample) const {
+    return sample << plane_shift;
+  }
+  /// Index of a texel within the chain; of several samples, of the first.
   [[nodiscard]] std::uint32_t texel_index(std::uint32_t level, std::uint32_t x, std::uint32_t y,
                                           std::uint32_t slice = 0) const {
     const std::uint32_t start =
@@ -120,7 +126,7 @@ struct TextureView {
 };
 
 /// An attachment as a sampler sees it: its levels, finest first, where they were drawn. They lie one behind
-/// the other, less than 2^31 texels apart.
+/// the other. Throws `UserError` for 2^31 texels and more, with all samples.
 [[nodiscard]] TextureView view_of_surfaces(std::span<const SurfaceLayout> levels, Format format);
 /// The same of several layers, one behind the other, each with so many levels. Neighbours are equally far
 /// apart.
