@@ -48,8 +48,10 @@ void main() {
 constexpr std::string_view kDeclared = R"(#version 450
 layout(location = 0) flat in vec4 picked;
 layout(location = 0) out vec4 o;
-layout(set = 0, binding = 0) uniform sampler2DMS one; layout(set = 0, binding = 1) uniform sampler2DMSArray some;
-layout(set = 0, binding = 2) uniform LETTERsampler2DMS words; layout(set = 0, binding = 3) uniform sampler2DMS depths;
+layout(set = 0, binding = 0) uniform sampler2DMS one;
+layout(set = 0, binding = 1) uniform sampler2DMSArray some;
+layout(set = 0, binding = 2) uniform LETTERsampler2DMS words;
+layout(set = 0, binding = 3) uniform sampler2DMS depths;
 layout(set = 0, binding = 4) uniform sampler2D resolved;
 )";
 
@@ -82,8 +84,9 @@ constexpr std::string_view kBeyondBody = R"(
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy), size = textureSize(one);
   int count = textureSamples(one) + (at.x & 1);
-  vec4 all = abs(texelFetch(one, at, count)) + abs(texelFetch(one, at, -1 - at.x)) + abs(texelFetch(one, at + size, 0));
-  all += abs(texelFetch(one, ivec2(at.x, -1), 1)) + abs(texelFetch(some, ivec3(at, 2), 0)) + abs(texelFetch(some, ivec3(at, 0), 99));
+  vec4 all = abs(texelFetch(one, at, count)) + abs(texelFetch(one, at, -1 - at.x));
+  all += abs(texelFetch(one, at + size, 0)) + abs(texelFetch(one, ivec2(at.x, -1), 1));
+  all += abs(texelFetch(some, ivec3(at, 2), 0)) + abs(texelFetch(some, ivec3(at, 0), 99));
   uvec4 w = uvec4(texelFetch(words, at, count)) | uvec4(texelFetch(words, at + size, 0));
   o = vec4(all == vec4(0.0) && w == uvec4(0u) && texelFetch(depths, at, count).r == 0.0 ? 1.0 : 0.0);
 })";

@@ -1,5 +1,5 @@
-/// Single samples of attachments, fetched by a later pass: the machine's pixels and laws, its own resolve, the
-/// reference's picture, encoded lines, where samples lie, and what is refused.
+/// Single samples of attachments, fetched by a later pass: the machine's pixels and laws, its own resolve,
+/// the reference's picture, encoded lines, where samples lie, and what is refused.
 #include "tests/pipeline/multisampled_fetch_stream.h"
 
 #include "models/memory/surface.h"
