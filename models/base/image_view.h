@@ -1,5 +1,5 @@
-/// What an image is, and what a shader sees of it: lines, planes, volumes and cubes, arrays of them, and planes
-/// of several samples a texel.
+/// What an image is, and what a shader sees of it: lines, planes, volumes and cubes, arrays of them, and
+/// planes of several samples a texel.
 /// [VK1.3 #resources-images, #resources-image-views] Values are those of trace files and never change.
 #pragma once
 

@@ -257,8 +257,8 @@ class OperationPlanner {
     }
   }
 
-  /// A texel each, by integers; what is outside of the image, its levels or its samples is a transparent black
-  /// border.
+  /// A texel each, by integers; what is outside of the image, its levels or its samples is a transparent
+  /// black border.
   void fetch() {
     plan_.border = BorderColor::kTransparentBlack;
     plan_.slices = false;
