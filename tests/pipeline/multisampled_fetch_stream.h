@@ -30,9 +30,10 @@ struct FetchWish {
 /// Of random triangles; the same seed gives the same stream. It is validated.
 ///
 /// Images: 0 colours of three layers, 1 integers, 2 depths, all of several samples; 3 what layer 1 of image 0
-/// is resolved to, 4 the picture. Passes: 0 draws layer 1, integers and depths, and resolves the first; 1
-/// draws layer 2, and 2 loads it and draws more; 3 fetches, or samples image 3, into the picture. Descriptor set 0
-/// has layer 1 at binding 0, layers 1 and 2 at 1, the integers at 2, the depths at 3 and image 3 at 4.
+/// is resolved to, 4 the picture. Passes: 0 draws layer 1, integers and depths, and resolves the first.
+/// Pass 1 draws layer 2, and 2 loads it and draws more. Pass 3 fetches, or samples image 3, into the picture.
+/// Descriptor set 0 has layer 1 at binding 0, layers 1 and 2 at 1, the integers at 2, the depths at 3 and
+/// image 3 at 4.
 [[nodiscard]] traces::CommandStream multisampled_fetch_stream(std::uint64_t seed, const FetchWish& wish = {});
 
 }  // namespace quadrille::pipeline::test
