@@ -3,6 +3,7 @@
 /// What the ISA has an operation for (a plane, sampled by its level, a bias or the quad) takes that. All else
 /// becomes a kTexOp with its words packed three by three.
 #include "pipeline/compiler/lowering.h"
+#include "pipeline/compiler/spirv_names.h"
 
 #include <algorithm>
 #include <limits>
