@@ -66,7 +66,8 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   int count = textureSamples(one), chosen = (at.x + 3 * at.y) % textureSamples(some);
   vec4 c = texelFetch(some, ivec3(at, 1), chosen).gbra * 0.3 + texelFetch(some, ivec3(at, 0), 1) * 0.3;
-  c += texelFetch(one, at.yx, count - 1).brga * 0.2 + vec4(texelFetch(depths, at, chosen).r) * 0.1;
+  c += texelFetch(one, ivec2(at.y, at.x % textureSize(one).y), count - 1).brga * 0.2;
+  c += vec4(texelFetch(depths, at, chosen).r) * 0.1;
   if ((at.x & 4) != 0) c += vec4(texelFetch(words, at, 0).x & 15) * 0.01;
   ivec3 size = textureSize(some);
   o = vec4(c.rgb + picked.rgb * 0.1, float(size.x + size.y + size.z + count + textureSize(depths).y) / 255.0);
@@ -181,11 +182,10 @@ class Maker {
   void fetch() {
     stream_.descriptor_sets = {{{},
                                 {{0, kColors, 0, 0, 1, 1, ViewKind::k2DMultisampled},
-                                 {1, kColors, traces::kNone, 0, 0, 1, ViewKind::k2DMultisampledArray, 2},
+                                 {1, kColors, 0, 0, 0, 1, ViewKind::k2DMultisampledArray, 2},
                                  {2, kIntegers, 0, 0, 1, 0, ViewKind::k2DMultisampled},
                                  {3, kDepths, 0, 0, 1, 0, ViewKind::k2DMultisampled},
                                  {4, kResolve, 0}}}};
-    stream_.descriptor_sets[0].textures[1].sampler = 0;
     traces::BeginPass pass;
     pass.colors.resize(1);
     pass.colors[0].image = kPicture;

@@ -131,6 +131,16 @@ TEST_CASE("multisampled fetch: a view finds each sample in its tile's plane, and
   }
 }
 
+TEST_CASE("multisampled fetch: samplers have no say, and may be missing") {
+  const traces::CommandStream stream = multisampled_fetch_stream(2);
+  traces::CommandStream without = stream;
+  for (std::size_t t = 0; t < 4; ++t) without.descriptor_sets[0].textures[t].sampler = traces::kNone;
+  CHECK(refusal(without).empty());
+  CHECK(functional_digest(without) == functional_digest(stream));
+  CHECK(studies::render_with_reference(without, {}).reference.color ==
+        studies::render_with_reference(stream, {}).reference.color);
+}
+
 TEST_CASE("multisampled fetch: streams survive their trace file") {
   const traces::CommandStream stream = multisampled_fetch_stream(3);
   CHECK(traces::decode_trace(traces::encode_trace(stream), "t") == stream);
