@@ -95,7 +95,7 @@ struct Image {
   /// instead of `texels`, for a machine that asks for what it samples; null: they are there
   std::shared_ptr<const UnpackTexels> packed{};
   std::uint8_t usage = kSampled;  ///< of `ImageUsage`
-  std::uint32_t samples = 1;      ///< a pixel: 1, 2, 4 or 8; of an attachment that is not sampled
+  std::uint32_t samples = 1;      ///< a pixel: 1, or of an attachment of one level 2, 4 or 8
   std::uint32_t layers = 1;       ///< images of this size and as many levels
   ImageKind kind = ImageKind::k2D;
   std::uint32_t depth = 1;  ///< of a volume
@@ -189,7 +189,8 @@ struct TextureDescriptor {
   std::uint32_t binding = 0;
   Index image = kNone, sampler = kNone;
   /// What is sampled: so many levels, from this one on, which is the finest. 0: all behind it. Of an array or
-  /// a cube, so many layers from `layer` on; else that one.
+  /// a cube, so many layers from `layer` on; else that one. Of several samples a pixel the view is one of the
+  /// multisampled kinds.
   std::uint32_t first_level = 0, levels = 0, layer = 0;
   ViewKind view = ViewKind::k2D;
   std::uint32_t layers = 1;

@@ -57,9 +57,9 @@ void check_samples(const Image& image, std::size_t index) {
   if (image.samples != 1 && image.samples != 2 && image.samples != 4 && image.samples != 8)
     throw user_error("image {} '{}': {} samples a pixel; 1, 2, 4 and 8 are possible", index, image.name,
                      image.samples);
-  if (image.samples > 1 && (!image.is_attachment() || (image.usage & kSampled) != 0))
-    throw user_error("image {} '{}': only an attachment that is not sampled has {} samples a pixel", index,
-                     image.name, image.samples);
+  if (image.samples > 1 && !image.is_attachment())
+    throw user_error("image {} '{}': only an attachment has {} samples a pixel", index, image.name,
+                     image.samples);
   if (image.samples > 1 && image.levels > 1)
     throw user_error("image {} '{}': {} levels of {} samples a pixel; it can have one", index, image.name,
                      image.levels, image.samples);
@@ -270,6 +270,9 @@ void check_view_kind(const Image& image, const TextureDescriptor& t, std::size_t
   if (models::image_kind(t.view) != image.kind)
     throw user_error("descriptor set {} binding {}: a view '{}' of image {} '{}', which is of another kind",
                      set, models::binding_text(t.binding), kind, t.image, image.name);
+  if (models::is_multisampled(t.view) != (image.samples > 1))
+    throw user_error("descriptor set {} binding {}: a view '{}' of image {} '{}' of {} samples a pixel", set,
+                     models::binding_text(t.binding), kind, t.image, image.name, image.samples);
   if (t.layers == 0 || t.layers > image.layers - t.layer)
     throw user_error("descriptor set {} binding {}: layers {}+{} of image {} '{}', which has {}", set,
                      models::binding_text(t.binding), t.layer, t.layers, t.image, image.name, image.layers);
@@ -297,9 +300,9 @@ void check_view(const CommandStream& stream, const TextureDescriptor& t, std::si
   check_view_kind(image, t, set);
 }
 
-/// Integers have no numbers between them. [VK1.3 #textures-texel-filtering]
+/// Integers have no numbers between them. [VK1.3 #textures-texel-filtering] Samples are not filtered.
 void check_filters(const CommandStream& stream, const TextureDescriptor& t, std::size_t set) {
-  if (t.sampler == kNone) return;
+  if (t.sampler == kNone || models::is_multisampled(t.view)) return;
   const Image& image = stream.images[t.image];
   const Sampler& sampler = stream.samplers[t.sampler];
   if (!is_integer_format(image.format)) return;

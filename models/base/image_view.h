@@ -1,4 +1,5 @@
-/// What an image is, and what a shader sees of it: lines, planes, volumes and cubes, and arrays of them.
+/// What an image is, and what a shader sees of it: lines, planes, volumes and cubes, arrays of them, and
+/// planes of several samples a texel.
 /// [VK1.3 #resources-images, #resources-image-views] Values are those of trace files and never change.
 #pragma once
 
@@ -9,12 +10,25 @@
 namespace quadrille::models {
 
 enum class ImageKind : std::uint8_t { k1D, k2D, k3D };
-enum class ViewKind : std::uint8_t { k2D, k1D, k3D, kCube, k1DArray, k2DArray, kCubeArray };
-inline constexpr ViewKind kLastViewKind = ViewKind::kCubeArray;
-inline constexpr std::array<std::string_view, 7> kViewKindNames{"2d",       "1d",       "3d",        "cube",
-                                                                "1d-array", "2d-array", "cube-array"};
+enum class ViewKind : std::uint8_t {
+  k2D,
+  k1D,
+  k3D,
+  kCube,
+  k1DArray,
+  k2DArray,
+  kCubeArray,
+  k2DMultisampled,  ///< and the array: of several samples a texel, of which programs fetch one
+  k2DMultisampledArray
+};
+inline constexpr ViewKind kLastViewKind = ViewKind::k2DMultisampledArray;
+inline constexpr std::array<std::string_view, 9> kViewKindNames{
+    "2d", "1d", "3d", "cube", "1d-array", "2d-array", "cube-array", "2d-ms", "2d-ms-array"};
 
-[[nodiscard]] constexpr bool is_array(ViewKind kind) { return kind >= ViewKind::k1DArray; }
+[[nodiscard]] constexpr bool is_array(ViewKind kind) {
+  return kind >= ViewKind::k1DArray && kind != ViewKind::k2DMultisampled;
+}
+[[nodiscard]] constexpr bool is_multisampled(ViewKind kind) { return kind >= ViewKind::k2DMultisampled; }
 [[nodiscard]] constexpr bool is_cube(ViewKind kind) {
   return kind == ViewKind::kCube || kind == ViewKind::kCubeArray;
 }
@@ -24,7 +38,9 @@ inline constexpr std::array<std::string_view, 7> kViewKindNames{"2d",       "1d"
     case ViewKind::k1D:
     case ViewKind::k1DArray: return 1;
     case ViewKind::k2D:
-    case ViewKind::k2DArray: return 2;
+    case ViewKind::k2DArray:
+    case ViewKind::k2DMultisampled:
+    case ViewKind::k2DMultisampledArray: return 2;
     case ViewKind::k3D:
     case ViewKind::kCube:
     case ViewKind::kCubeArray: return 3;

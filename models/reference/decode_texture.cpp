@@ -44,7 +44,9 @@ bool Decoder::texture_instruction(Frame& frame, const SpirvInstruction& in) {
     case spv::OpImageQueryLod: ask_texture(frame, in, Kind::kQueryLod, 2); return true;
     case spv::OpImage: frame.values[in.result] = value(frame, in.words[0]); return true;
     case spv::OpSampledImage: combine(frame, in); return true;
+    case spv::OpImageQuerySize:
     case spv::OpImageQuerySizeLod:
+    case spv::OpImageQuerySamples:
     case spv::OpImageQueryLevels: query(frame, in); return true;
     default: return false;
   }
@@ -79,10 +81,11 @@ void Decoder::combine(Frame& frame, const SpirvInstruction& in) {
 
 void Decoder::query(Frame& frame, const SpirvInstruction& in) {
   const Value texture = value(frame, in.words[0]);
-  const bool levels = in.op == spv::OpImageQueryLevels;
-  const Slot level = levels ? kNoSlot : value(frame, in.words[1]).slot;
-  emit(levels ? query_levels : query_size, cells(in.type), define(frame, in).slot, {texture.index, level})
-      .imm[0] = texture.slot;
+  const Slot level = in.op == spv::OpImageQuerySizeLod ? value(frame, in.words[1]).slot : kNoSlot;
+  const Handler handler = in.op == spv::OpImageQueryLevels    ? query_levels
+                          : in.op == spv::OpImageQuerySamples ? query_samples
+                                                              : query_size;
+  emit(handler, cells(in.type), define(frame, in).slot, {texture.index, level}).imm[0] = texture.slot;
 }
 
 void Decoder::ask_texture(Frame& frame, const SpirvInstruction& in, TextureInstruction::Kind kind,
@@ -132,8 +135,9 @@ void Decoder::image_operands(Frame& frame, const SpirvInstruction& in, std::size
   }
   if (has(spv::ImageOperandsOffsetMask)) ask.offsets = slot();
   if (has(spv::ImageOperandsConstOffsetsMask)) numbers(ask.four_offsets);
-  constexpr std::uint32_t kKnown = 0x3f;
-  if ((mask & ~kKnown) != 0) unsupported("image operands of samples or of a least level");
+  if (has(spv::ImageOperandsSampleMask)) ask.sample = slot();
+  constexpr std::uint32_t kKnown = 0x7f;
+  if ((mask & ~kKnown) != 0) unsupported("image operands of a least level");
 }
 
 }  // namespace quadrille::models::reference

@@ -49,6 +49,7 @@ void set_uniform(Cell& cell, std::span<const std::byte> bytes, const UniformScal
 const traces::Sampler* sampler_of(const ShaderProgram& program, const DrawState& state, const TextureUse& use,
                                   const traces::TextureDescriptor& texture) {
   static const traces::Sampler kAny{};
+  if (is_multisampled(texture.view)) return &kAny;  // single samples are fetched
   if (!use.separate) return &state.stream->samplers.at(texture.sampler);
   if (use.sampler_binding == TextureUse{}.sampler_binding) return &kAny;
   for (const traces::SamplerDescriptor& s : descriptor_set(program, state, use.sampler_set).samplers)

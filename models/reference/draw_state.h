@@ -33,7 +33,8 @@ struct KeptFragment {
 };
 using KeptFragments = std::vector<KeptFragment>;
 
-/// Layers of attachments, each with all its levels as texels.
+/// Layers of attachments, each with all its levels as texels. Those of several samples have one level, and
+/// the samples of a pixel follow each other.
 using DrawnLayers = std::map<std::pair<traces::Index, std::uint32_t>, traces::Image>;
 /// Images of compressed blocks, with their texels.
 using UnpackedImages = std::map<traces::Index, traces::Image>;

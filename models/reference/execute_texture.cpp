@@ -125,9 +125,10 @@ Texel fetch(const TextureView& texture, const TextureInstruction& ask, const Lan
   };
   for (std::uint32_t k = 0; k < dimensions; ++k) place.at(k) = word(k) + offset.at(k);
   if (is_array(texture.kind)) place[2] = word(dimensions);
-  const std::int64_t level =
-      ask.level == kNoSlot ? 0 : std::int64_t{static_cast<std::int32_t>(lanes.cells[ask.level].u(lane))};
-  return fetched_texel(texture, place, level);
+  const auto number = [&](Slot slot) {
+    return slot == kNoSlot ? 0 : std::int64_t{static_cast<std::int32_t>(lanes.cells[slot].u(lane))};
+  };
+  return fetched_texel(texture, place, number(ask.level), number(ask.sample));
 }
 
 Texel answer(const TextureView& texture, const TextureInstruction& ask, const Lanes& lanes, int lane) {
@@ -167,7 +168,8 @@ void query_size(const Operation& o, Lanes& lanes) {
   std::array<Cell, 3> size{};
   for (int lane = 0; lane < kLanes; ++lane) {
     const TextureView& texture = texture_of(lanes, o.imm[0], o.src[0], lane);
-    const std::uint32_t level = lanes.cells[o.src[1]].u(lane), last = texture.levels - 1;
+    const std::uint32_t level = o.src[1] == kNoSlot ? 0 : lanes.cells[o.src[1]].u(lane),
+                        last = texture.levels - 1;
     const std::uint32_t l = texture.first_level + (level <= last ? level : 0);
     const std::uint32_t cubes = texture.layers / (is_cube(texture.kind) ? kCubeFaces : 1);
     std::array<std::uint32_t, 3> all{traces::level_width(*texture.image, l),
@@ -177,6 +179,13 @@ void query_size(const Operation& o, Lanes& lanes) {
     for (std::size_t axis = 0; axis < 3; ++axis) size.at(axis).set_u(lane, all.at(axis));
   }
   for (std::uint32_t axis = 0; axis < o.n; ++axis) write(lanes, lanes.cells[o.dst + axis], size.at(axis));
+}
+
+void query_samples(const Operation& o, Lanes& lanes) {
+  Cell samples;
+  for (int lane = 0; lane < kLanes; ++lane)
+    samples.set_u(lane, texture_of(lanes, o.imm[0], o.src[0], lane).image->samples);
+  write(lanes, lanes.cells[o.dst], samples);
 }
 
 void query_levels(const Operation& o, Lanes& lanes) {

@@ -40,8 +40,9 @@ void note_margin(const Operation& o, Lanes& lanes);  ///< lowers the discard mar
 // Textures: imm[0] is the instruction of the program's list, or of queries the texture, and src[0] the cell
 // with what is added to it.
 void ask_texture_lanes(const Operation& o, Lanes& lanes);
-void query_size(const Operation& o, Lanes& lanes);  ///< src[1]: the level
+void query_size(const Operation& o, Lanes& lanes);  ///< src[1]: the level, if it has any
 void query_levels(const Operation& o, Lanes& lanes);
+void query_samples(const Operation& o, Lanes& lanes);
 
 /// Stores a cell for the running lanes.
 inline void write(Lanes& lanes, Cell& dst, const Cell& value) {

@@ -171,8 +171,9 @@ class Renderer {
       resolve(colors_[use.part()], to);
       keep(use.resolve_part(), to.code);
     }
-    if (state_.depth != nullptr && state_.samples == 1) {
+    if (state_.depth != nullptr && is_sampled(begun_->depth.image)) {
       std::vector<PixelCode> codes;
+      codes.reserve(state_.depth->size());
       for (const double z : *state_.depth)
         codes.push_back(store_depth(stream_.images[begun_->depth.image].format, z));
       keep(begun_->depth.part(), codes);
@@ -198,12 +199,16 @@ class Renderer {
     }
   }
 
+  [[nodiscard]] bool is_sampled(traces::Index image) const {
+    return (stream_.images[image].usage & traces::kSampled) != 0;
+  }
+
   /// Makes what a pass drew a level of a texture.
   void keep(const traces::ImagePart& part, const std::vector<PixelCode>& codes) {
-    if ((stream_.images[part.image].usage & traces::kSampled) == 0) return;
+    if (!is_sampled(part.image)) return;
     const auto [place, fresh] = drawn_.try_emplace({part.image, part.layer}, stream_.images[part.image]);
     traces::Image& image = place->second;
-    if (fresh) image.texels.assign(traces::texel_bytes(image) / image.layers, std::byte{0});
+    if (fresh) image.texels.assign(image.samples * traces::texel_bytes(image) / image.layers, std::byte{0});
     std::byte* at = image.texels.data();
     for (std::uint32_t level = 0; level < part.level; ++level) at += traces::level_bytes(image, level);
     const std::size_t bytes = traces::format_bytes(image.format);

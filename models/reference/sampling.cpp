@@ -126,21 +126,23 @@ std::array<std::uint32_t, 2> level_extent(const TextureView& texture, std::uint3
   return level_extent(*texture.image, texture.first_level + (level < texture.levels ? level : 0));
 }
 
-Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t x, std::uint32_t y) {
+Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t x, std::uint32_t y,
+                  std::uint32_t sample) {
   std::size_t first = 0;
   for (std::uint32_t l = 0; l < level; ++l)
     first += std::size_t{level_extent(image, l)[0]} * level_extent(image, l)[1];
   const std::size_t bytes = traces::format_bytes(image.format);
-  const std::size_t at = bytes * (first + std::size_t{y} * level_extent(image, level)[0] + x);
+  const std::size_t at =
+      bytes * (image.samples * (first + std::size_t{y} * level_extent(image, level)[0] + x) + sample);
   PixelCode code;
   std::memcpy(code.word.data(), image.texels.data() + at, bytes);
   return load_color(image.format, code);
 }
 
 Texel view_texel(const TextureView& texture, std::uint32_t level, std::uint32_t x, std::uint32_t y,
-                 std::uint32_t slice) {
+                 std::uint32_t slice, std::uint32_t sample) {
   const std::uint32_t l = texture.first_level + level;
-  if (!texture.drawn.empty()) return fetch_texel(*texture.drawn.at(slice), l, x, y);
+  if (!texture.drawn.empty()) return fetch_texel(*texture.drawn.at(slice), l, x, y, sample);
   const traces::Image& image = *texture.image;
   std::uint64_t at = 0;
   for (std::uint32_t finer = 0; finer < l; ++finer) at += traces::level_bytes(image, finer) * image.layers;

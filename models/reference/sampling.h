@@ -28,13 +28,13 @@ struct TextureView {
   std::vector<const traces::Image*> drawn{};
 };
 
-/// Decodes one texel of a level; x and y are inside it.
+/// Decodes one texel of a level; x and y are inside it. The samples of a texel follow each other.
 [[nodiscard]] Texel fetch_texel(const traces::Image& image, std::uint32_t level, std::uint32_t x,
-                                std::uint32_t y);
+                                std::uint32_t y, std::uint32_t sample = 0);
 
 /// Decodes one texel of what the view sees: of a level, and of a layer or slice.
 [[nodiscard]] Texel view_texel(const TextureView& texture, std::uint32_t level, std::uint32_t x,
-                               std::uint32_t y, std::uint32_t slice);
+                               std::uint32_t y, std::uint32_t slice, std::uint32_t sample = 0);
 
 /// log2 of the larger of the two footprint lengths, in texels of the finest level. The derivatives are of
 /// normalised coordinates. Minus infinity where both are zero. [VK1.3 #textures-scale-factor]

@@ -46,7 +46,7 @@ struct TextureInstruction {
   std::uint32_t texture = 0;
   Slot index = kNoSlot;  ///< cell with what is added to `texture`, which takes one of an array
   Slot coordinates = kNoSlot, reference = kNoSlot, bias = kNoSlot, level = kNoSlot, gradient_x = kNoSlot,
-       gradient_y = kNoSlot, offsets = kNoSlot;
+       gradient_y = kNoSlot, offsets = kNoSlot, sample = kNoSlot;
   bool projective = false;
   std::uint32_t coordinate_cells = 2;
   std::uint32_t component = 0;             ///< of a gather

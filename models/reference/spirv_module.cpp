@@ -176,8 +176,10 @@ class Reader {
       case spv::OpTypeImage:
         t.kind = TypeKind::kImage;
         if ((w[1] != spv::Dim1D && w[1] != spv::Dim2D && w[1] != spv::Dim3D && w[1] != spv::DimCube) ||
-            w[4] != 0 || w[5] != 1)
-          unsupported("an image other than a sampled one of one sample, 1D, 2D, 3D or a cube, or an array");
+            (w[4] != 0 && w[1] != spv::Dim2D) || w[5] != 1)
+          unsupported(
+              "an image other than a sampled one, 1D, 2D, 3D or a cube, or an array, of several samples in "
+              "2D");
         break;
       case spv::OpTypeSampler: t.kind = TypeKind::kSampler; break;
       case spv::OpTypeSampledImage: t.kind = TypeKind::kSampledImage, t.element = w[0]; break;

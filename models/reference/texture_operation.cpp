@@ -331,16 +331,16 @@ std::array<Texel, 4> gathered_texels(const TextureView& texture, const TextureQu
   return {t[2], t[3], t[1], t[0]};
 }
 
-Texel fetched_texel(const TextureView& texture, const std::array<std::int64_t, 3>& place,
-                    std::int64_t level) {
+Texel fetched_texel(const TextureView& texture, const std::array<std::int64_t, 3>& place, std::int64_t level,
+                    std::int64_t sample) {
   const Texel nothing = border_texel(texture, BorderColor::kTransparentBlack);
-  if (level < 0 || level >= texture.levels) return nothing;
+  if (level < 0 || level >= texture.levels || sample < 0 || sample >= texture.image->samples) return nothing;
   const auto l = static_cast<std::uint32_t>(level);
   const std::array<std::int64_t, 3> sizes = sizes_of(texture, l);
   for (std::size_t k = 0; k < 3; ++k)
     if (place.at(k) < 0 || place.at(k) >= sizes.at(k)) return nothing;
   return view_texel(texture, l, static_cast<std::uint32_t>(place[0]), static_cast<std::uint32_t>(place[1]),
-                    static_cast<std::uint32_t>(place[2]));
+                    static_cast<std::uint32_t>(place[2]), static_cast<std::uint32_t>(sample));
 }
 
 std::array<double, 2> queried_levels(const TextureView& texture, const TextureQuestion& q) {

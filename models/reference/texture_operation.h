@@ -28,9 +28,10 @@ struct TextureQuestion {
 /// with its result as the first.
 [[nodiscard]] std::array<Texel, 4> gathered_texels(const TextureView& texture,
                                                    const TextureQuestion& question);
-/// By integers: place, then the layer of an array. Outside of the image, transparent black.
+/// By integers: place, then the layer of an array. Outside of the image, its levels and its samples,
+/// transparent black.
 [[nodiscard]] Texel fetched_texel(const TextureView& texture, const std::array<std::int64_t, 3>& place,
-                                  std::int64_t level);
+                                  std::int64_t level, std::int64_t sample);
 /// The level that is read, and the level of detail before limits.
 [[nodiscard]] std::array<double, 2> queried_levels(const TextureView& texture,
                                                    const TextureQuestion& question);

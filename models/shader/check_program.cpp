@@ -93,6 +93,8 @@ class Checker {
       case Immediate::kTextureBinding:
         require(in.imm < program_.textures.size(), "texture {} does not exist; the program has {}", in.imm,
                 program_.textures.size());
+        require(!is_texture_request(in.op) || !is_multisampled(program_.textures[in.imm].view),
+                "'{}' of texture {}, of which single samples are fetched", op_name(in.op), in.imm);
         break;
       case Immediate::kTextureOperation: check_texture_operation(in); break;
       case Immediate::kBufferBinding:
@@ -108,7 +110,11 @@ class Checker {
     const TextureOperation& operation = program_.texture_operations[in.imm];
     require(operation.texture < program_.textures.size(), "texture {} does not exist; the program has {}",
             operation.texture, program_.textures.size());
-    const int words = word_count(operation, program_.textures[operation.texture].view);
+    const ViewKind view = program_.textures[operation.texture].view;
+    const bool fetches = operation.ask == TextureAsk::kFetch && operation.level == LevelFrom::kLevel;
+    require(fetches || !is_multisampled(view),
+            "an operation on texture {}, of which single samples are fetched", operation.texture);
+    const int words = word_count(operation, view);
     require(words <= kMaxTextureWords, "a texture operation of {} words; legal: at most {}", words,
             kMaxTextureWords);
     const bool from_quad = operation.level == LevelFrom::kQuad || operation.level == LevelFrom::kBias;

@@ -124,7 +124,8 @@ enum class Op : std::uint8_t {
   // operand: a register stands for itself and the two behind it; a constant for three times itself.
   kTexOp,
   kTexOpQuad,  ///< one that takes differences within the quad
-  /// dst .. dst+3 = width, height, depth or layers, and levels of texture `imm`, at level a
+  /// dst .. dst+3 = width, height, depth or layers, and levels of texture `imm`, at level a; samples in place
+  /// of levels where a texel has several
   kTexDims,
   kPack,  ///< dst, dst+1, dst+2 = a, b, c
   // Storage buffers: a = byte offset, a multiple of 4; `imm` = buffer binding. Atomic operations write what
@@ -261,7 +262,7 @@ struct TextureBinding {
 /// What a kTexOp does with its texture.
 enum class TextureAsk : std::uint8_t {
   kSample,    ///< the filtered texel
-  kFetch,     ///< a texel by its integer coordinates and level
+  kFetch,     ///< a texel by its integer coordinates and level, or sample
   kGather,    ///< a component of the four texels that a linear filter would take
   kQueryLod,  ///< x: the level that would be read; y: the level of detail before it is limited to the levels
 };
@@ -269,7 +270,7 @@ enum class TextureAsk : std::uint8_t {
 enum class LevelFrom : std::uint8_t {
   kQuad,      ///< differences within the quad
   kBias,      ///< the same, and a bias
-  kLevel,     ///< given; of a fetch, an integer
+  kLevel,     ///< given; of a fetch, an integer, which of a multisampled view is the sample
   kGradients  ///< derivatives of the coordinates along x, then along y
 };
 inline constexpr int kMaxTextureWords = 9;

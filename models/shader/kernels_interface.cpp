@@ -227,7 +227,7 @@ void execute_texture_size(const DecodedInstruction& d, ExecutionContext& x) {
   }
 }
 
-/// The same with its depth, or the layers, and the number of levels.
+/// The same with its depth, or the layers, and the number of levels or samples.
 template <bool kConstant, bool kMasked>
 void execute_texture_dims(const DecodedInstruction& d, ExecutionContext& x) {
   const TextureSize& size = x.warp->texture_sizes[d.imm];
@@ -235,7 +235,7 @@ void execute_texture_dims(const DecodedInstruction& d, ExecutionContext& x) {
     const __m256i level = level_asked(read_operand(d.a, kConstant, x, g), size);
     const Words third = size.layers != 0 ? splat_word(size.layers) : side_of_level(size.depth, level);
     const Words values[] = {side_of_level(size.width, level), side_of_level(size.height, level), third,
-                            splat_word(size.levels)};
+                            splat_word(size.samples != 0 ? size.samples : size.levels)};
     for (std::size_t k = 0; k < 4; ++k)
       write_group<kMasked>(x.regs + d.dst + k * sizeof(RegisterRow), g, values[k], x);
   }

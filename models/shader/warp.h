@@ -103,6 +103,7 @@ struct ClauseCost {
 struct TextureSize {
   std::uint32_t width = 1, height = 1, levels = 1;
   std::uint32_t depth = 1, layers = 0;  ///< layers of an array (of cubes: as many as cubes), else 0
+  std::uint32_t samples = 0;            ///< a texel of a multisampled view, which has one level, else 0
 };
 
 /// One register of a warp, aligned to a host cache line.

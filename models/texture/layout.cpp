@@ -209,10 +209,17 @@ TextureView view_of_surfaces(std::span<const SurfaceLayout> layers, std::uint32_
   TextureLayout& layout = view.layout;
   layout.tiling = Tiling::kSurface;
   layout.levels = levels;
-  const std::uint32_t tile_texels = finest.plane_stride() / finest.pixel_bytes;
+  const std::uint32_t plane_texels = finest.plane_stride() / finest.pixel_bytes,
+                      tile_texels = plane_texels * finest.samples;
   layout.tile_shift = std::countr_zero(tile_texels);
+  layout.samples = finest.samples;
+  layout.plane_shift = std::countr_zero(plane_texels);
   const std::size_t count = layers.size() / levels;
   const std::uint64_t apart = count > 1 ? layers[levels].base - finest.base : 0;
+  layout.bytes = last.base + last.bytes() - finest.base;
+  if (layout.bytes / finest.pixel_bytes >= std::uint64_t{1} << 31)
+    throw user_error("attachment of {} x {} pixels, {} samples, {} layers: it takes 2^31 texels and more",
+                     finest.width, finest.height, finest.samples, count);
   for (std::size_t layer = 0; layer < count; ++layer)
     QUADRILLE_CHECK(layers[layer * levels].base == finest.base + layer * apart, "layer {} lies elsewhere",
                     layer);
@@ -225,7 +232,6 @@ TextureView view_of_surfaces(std::span<const SurfaceLayout> layers, std::uint32_
     layout.slices[level] = static_cast<std::int32_t>(count);
     layout.slice_texels[level] = static_cast<std::int32_t>(apart / surface.pixel_bytes);
   }
-  layout.bytes = last.base + last.bytes() - finest.base;
   return view;
 }
 

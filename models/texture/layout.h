@@ -17,7 +17,8 @@
 /// of four components of 8 bits whose sides differ by at most a factor of two lie so; others are tiled.
 ///
 /// An attachment that is sampled lies as it was drawn, in tiles of 8x8 pixels that are quad-major
-/// (memory/surface.h): x0 y0 x1 x2 y1 y2.
+/// (memory/surface.h): x0 y0 x1 x2 y1 y2. Of several samples a pixel the planes of a tile follow each other,
+/// and the sample adds a part of its own.
 ///
 /// A texture of compressed blocks lies as one whose texels were the blocks. Its texels are counted row by row
 /// within a block, and a block has as many places as the next power of two: 16 for 4x4 texels, 64 for 6x6. So
@@ -73,7 +74,9 @@ struct TextureLayout {
   std::uint64_t bytes = 0;                      ///< whole chain; a multiple of a line
   /// log2 of the texels from a tile of a surface to the next
   int tile_shift = 6;
-  BlockPlaces blocks;  ///< 1x1 but of a format of blocks
+  std::uint32_t samples = 1;  ///< a texel, of a surface
+  int plane_shift = 6;        ///< log2 of the texels from a sample's plane of a tile to the next
+  BlockPlaces blocks;         ///< 1x1 but of a format of blocks
 
   [[nodiscard]] constexpr bool in_blocks() const { return blocks.place_bits != 0; }
   /// log2 of the bytes of a row of Williams' square; else 0.
@@ -92,7 +95,10 @@ struct TextureLayout {
   [[nodiscard]] static constexpr std::uint32_t surface_y_part_in_tile(std::uint32_t y) {
     return (y & 1) << 1 | (y & 6) << 3;
   }
-  /// Index of a texel within the chain.
+  [[nodiscard]] constexpr std::uint32_t sample_part(std::uint32_t sample) const {
+    return sample << plane_shift;
+  }
+  /// Index of a texel within the chain; of several samples, of the first.
   [[nodiscard]] std::uint32_t texel_index(std::uint32_t level, std::uint32_t x, std::uint32_t y,
                                           std::uint32_t slice = 0) const;
 
@@ -142,7 +148,7 @@ struct TextureView {
 };
 
 /// An attachment as a sampler sees it: its levels, finest first, where they were drawn. They lie one behind
-/// the other, less than 2^31 texels apart.
+/// the other. Throws `UserError` for 2^31 texels and more, with all samples.
 [[nodiscard]] TextureView view_of_surfaces(std::span<const SurfaceLayout> levels, Format format);
 /// The same of several layers, one behind the other, each with so many levels. Neighbours are equally far
 /// apart.

@@ -314,7 +314,8 @@ class OperationPlanner {
     }
   }
 
-  /// A texel each, by integers; what is outside of the image or its levels is a transparent black border.
+  /// A texel each, by integers; what is outside of the image, its levels or its samples is a transparent
+  /// black border.
   void fetch() {
     plan_.border = BorderColor::kTransparentBlack;
     plan_.slices = false;
@@ -337,9 +338,11 @@ class OperationPlanner {
       return std::int64_t{std::bit_cast<std::int32_t>(request_.word(k)[lane])};
     };
     const TextureLayout& layout = view_.layout;
-    const std::int64_t level = word(static_cast<std::size_t>(words_.level));
-    bool inside = level >= 0 && level < layout.levels;
-    const std::size_t l = inside ? static_cast<std::size_t>(level) : 0;
+    const bool multisampled = is_multisampled(view_.kind);
+    const std::int64_t wanted = word(static_cast<std::size_t>(words_.level));
+    bool inside = wanted >= 0 && wanted < (multisampled ? layout.samples : layout.levels);
+    const std::uint32_t number = inside ? static_cast<std::uint32_t>(wanted) : 0,
+                        l = multisampled ? 0 : number, sample = multisampled ? number : 0;
     std::array<std::int64_t, 3> at{};
     for (std::size_t k = 0; k < dimensions_; ++k) {
       at.at(k) = word(k) + operation_.offset.at(k);
@@ -351,9 +354,10 @@ class OperationPlanner {
       inside = inside && at.at(k) >= 0 && at.at(k) < sizes.at(k);
       at.at(k) = std::clamp<std::int64_t>(at.at(k), 0, sizes.at(k) - 1);
     }
-    const auto index = static_cast<std::int32_t>(
-        layout.texel_index(static_cast<std::uint32_t>(l), static_cast<std::uint32_t>(at[0]),
-                           static_cast<std::uint32_t>(at[1]), static_cast<std::uint32_t>(at[2])));
+    const auto index = static_cast<std::int32_t>(layout.sample_part(sample) +
+                                                 layout.texel_index(l, static_cast<std::uint32_t>(at[0]),
+                                                                    static_cast<std::uint32_t>(at[1]),
+                                                                    static_cast<std::uint32_t>(at[2])));
     for (auto& corner : out.texel) corner[place] = index;
     if (!inside) out.border |= 0x01010101u << place;
     plan_.finer_level[lane] = static_cast<std::int32_t>(l);

@@ -3,6 +3,7 @@
 /// What the ISA has an operation for (a plane, sampled by its level, a bias or the quad) takes that. All else
 /// becomes a kTexOp with its words packed three by three.
 #include "pipeline/compiler/lowering.h"
+#include "pipeline/compiler/spirv_names.h"
 
 #include <algorithm>
 #include <limits>
@@ -20,7 +21,11 @@ using Kind = spirv::Type::Kind;
 
 /// What a shader sees of an image of this type, if it can be sampled here.
 std::optional<ViewKind> view_kind(const spirv::Type& image) {
-  if (image.kind != Kind::kImage || image.multisampled || !image.sampled) return std::nullopt;
+  if (image.kind != Kind::kImage || !image.sampled) return std::nullopt;
+  if (image.multisampled) {
+    if (image.dim != spv::Dim2D) return std::nullopt;
+    return image.arrayed ? ViewKind::k2DMultisampledArray : ViewKind::k2DMultisampled;
+  }
   switch (image.dim) {
     case spv::Dim1D: return image.arrayed ? ViewKind::k1DArray : ViewKind::k1D;
     case spv::Dim2D: return image.arrayed ? ViewKind::k2DArray : ViewKind::k2D;
@@ -80,12 +85,12 @@ void Lowering::declare_texture(const spirv::Variable& variable) {
   const std::optional<ViewKind> view = view_kind(image);
   if (!view)
     throw user_error(
-        "{}",
-        module_.at_use(variable.id,
-                       fmt::format("resource {} is not a sampler, a texture or both in one (of floats or "
-                                   "integers, 1D, 2D, 3D, cube and arrays of them, of one sample), the "
-                                   "only kinds supported; declare it as a sampler2D or the like",
-                                   module_.name(variable.id))));
+        "{}", module_.at_use(
+                  variable.id,
+                  fmt::format("resource {} is not a sampler, a texture or both in one (of floats or "
+                              "integers, 1D, 2D, 3D, cube and arrays of them, or 2D of several samples), "
+                              "the only kinds supported; declare it as a sampler2D or the like",
+                              module_.name(variable.id))));
   models::TextureBinding binding{set, place, number_kind(image.element), *view};
   if (!combined) binding.sampler_binding = models::kNoSampler;
   textures_[variable.id] = texture_index(binding);
@@ -102,6 +107,15 @@ std::uint16_t Lowering::texture_of(Id image, const spirv::Instruction& i) const 
   const auto texture = textures_.find(image);
   if (texture == textures_.end()) throw unsupported(i, "an operation on what is not a texture variable");
   return texture->second;
+}
+
+/// The same of an instruction that one of several samples a texel does not have.
+std::uint16_t Lowering::texture_of_one_sample(Id image, const spirv::Instruction& i) const {
+  const std::uint16_t texture = texture_of(image, i);
+  if (models::is_multisampled(shader_.textures[texture].view))
+    throw unsupported(i,
+                      fmt::format("{} of a texture of several samples (use texelFetch)", spirv::name_of(i)));
+  return texture;
 }
 
 /// A texture with a sampler of its own.
@@ -133,8 +147,10 @@ bool Lowering::image(const spirv::Instruction& i) {
     case spv::OpImageGather:
     case spv::OpImageDrefGather: gather(i); return true;
     case spv::OpImageQueryLod: query_lod(i); return true;
-    case spv::OpImageQuerySizeLod: image_size(i); return true;
-    case spv::OpImageQueryLevels: image_levels(i); return true;
+    case spv::OpImageQuerySizeLod: image_size(i, texture_of_one_sample(i.operands[0], i)); return true;
+    case spv::OpImageQuerySize:
+    case spv::OpImageQuerySamples: return of_samples(i);
+    case spv::OpImageQueryLevels: image_levels(i, texture_of_one_sample(i.operands[0], i)); return true;
     case spv::OpDPdx:
     case spv::OpDPdy:
     case spv::OpFwidth:
@@ -181,9 +197,10 @@ Lowering::ImageOperands Lowering::image_operands(const spirv::Instruction& i, st
     if (words == nullptr || words->size() != 8) throw unsupported(i, "four offsets that are not known");
     operands.four_offsets = *words;
   }
-  // Bias, level, gradients, and offsets of three kinds.
-  constexpr std::uint32_t kKnown = (std::uint32_t{spv::ImageOperandsConstOffsetsMask} << 1) - 1;
-  if ((mask & ~kKnown) != 0) throw unsupported(i, "a sample's number or a least level (textureClamp)");
+  if (has(spv::ImageOperandsSampleMask)) operands.sample = value(i.operands[next++]);
+  // Bias, level, gradients, offsets of three kinds, and a sample's number.
+  constexpr std::uint32_t kKnown = (std::uint32_t{spv::ImageOperandsSampleMask} << 1) - 1;
+  if ((mask & ~kKnown) != 0) throw unsupported(i, "a least level (textureClamp)");
   return operands;
 }
 
@@ -211,7 +228,7 @@ Values Lowering::ask(const spirv::Instruction& i, const TextureOperation& operat
 
 void Lowering::sample(const spirv::Instruction& i) {
   TextureOperation operation;
-  operation.texture = texture_of(i.operands[0], i);
+  operation.texture = texture_of_one_sample(i.operands[0], i);
   operation.compare = compares(i.op);
   if (is_implicit(i.op) && shader_.stage == models::ShaderStage::kVertex)
     throw unsupported(i, "implicit level of detail in a vertex shader (use textureLod)");
@@ -257,8 +274,15 @@ void Lowering::fetch(const spirv::Instruction& i) {
   operation.texture = texture_of(i.operands[0], i);
   operation.ask = TextureAsk::kFetch;
   const ImageOperands operands = image_operands(i, 2);
+  const bool multisampled = models::is_multisampled(shader_.textures[operation.texture].view);
+  if (operands.sample.empty() == multisampled)
+    throw unsupported(i, multisampled ? "a texel of several samples without a sample's number"
+                                      : "a sample's number of a texture of one sample");
+  if (multisampled &&
+      (!operands.lod.empty() || !operands.offsets.empty() || operands.offset != TextureOperation{}.offset))
+    throw unsupported(i, "a level or an offset of a texture of several samples");
   Values words = value(i.operands[1]);
-  append(words, operands.lod.empty() ? Values{literal(0u)} : operands.lod);
+  append(words, multisampled ? operands.sample : operands.lod.empty() ? Values{literal(0u)} : operands.lod);
   append(words, operands.offsets);
   operation.offset = operands.offset;
   operation.offsets = !operands.offsets.empty();
@@ -268,7 +292,7 @@ void Lowering::fetch(const spirv::Instruction& i) {
 /// With four offsets each component is the upper left texel of a gather of its own.
 void Lowering::gather(const spirv::Instruction& i) {
   TextureOperation operation;
-  operation.texture = texture_of(i.operands[0], i);
+  operation.texture = texture_of_one_sample(i.operands[0], i);
   operation.ask = TextureAsk::kGather;
   operation.compare = compares(i.op);
   const ImageOperands operands = image_operands(i, 3);
@@ -300,7 +324,7 @@ void Lowering::gather(const spirv::Instruction& i) {
 /// The layer has no say in it.
 void Lowering::query_lod(const spirv::Instruction& i) {
   TextureOperation operation;
-  operation.texture = texture_of(i.operands[0], i);
+  operation.texture = texture_of_one_sample(i.operands[0], i);
   operation.ask = TextureAsk::kQueryLod;
   operation.level = LevelFrom::kQuad;
   if (shader_.stage == models::ShaderStage::kVertex)
@@ -313,21 +337,31 @@ void Lowering::query_lod(const spirv::Instruction& i) {
   define(i, std::move(result));
 }
 
-void Lowering::image_size(const spirv::Instruction& i) {
-  const std::uint16_t texture = texture_of(i.operands[0], i);
+void Lowering::image_size(const spirv::Instruction& i, std::uint16_t texture) {
   const ViewKind view = shader_.textures[texture].view;
-  if (view == ViewKind::k2D)
-    return define(i, registers(build_.emit_wide(Op::kTexSize, scalar(i.operands[1]), {}, {}, texture), 2));
-  const Values all = registers(build_.emit_wide(Op::kTexDims, scalar(i.operands[1]), {}, {}, texture), 4);
+  const Value level = models::is_multisampled(view) ? literal(0u) : scalar(i.operands[1]);
+  if (view == ViewKind::k2D || view == ViewKind::k2DMultisampled)
+    return define(i, registers(build_.emit_wide(Op::kTexSize, level, {}, {}, texture), 2));
+  const Values all = registers(build_.emit_wide(Op::kTexDims, level, {}, {}, texture), 4);
   const int sides = models::is_cube(view) ? 2 : models::place_dimensions(view);
   Values result(all.begin(), all.begin() + sides);
   if (models::is_array(view)) result.push_back(all[2]);
   define(i, std::move(result));
 }
 
-void Lowering::image_levels(const spirv::Instruction& i) {
-  const std::uint16_t texture = texture_of(i.operands[0], i);
+void Lowering::image_levels(const spirv::Instruction& i, std::uint16_t texture) {
   define(i, {registers(build_.emit_wide(Op::kTexDims, literal(0u), {}, {}, texture), 4)[3]});
+}
+
+/// Size and number of the samples of a texture that has several. Of others, and of storage images, they are
+/// not known.
+bool Lowering::of_samples(const spirv::Instruction& i) {
+  const auto found = textures_.find(i.operands[0]);
+  if (found == textures_.end() || !models::is_multisampled(shader_.textures[found->second].view))
+    return false;
+  if (i.op == spv::OpImageQuerySize) image_size(i, found->second);
+  else image_levels(i, found->second);
+  return true;
 }
 
 /// Plain derivatives are the fine ones: the difference along the lane's own row or column of the quad.

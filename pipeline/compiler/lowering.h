@@ -187,11 +187,12 @@ class Lowering {
   [[nodiscard]] models::NumberKind number_kind(Id scalar) const;
   /// What an instruction says of an operation on a texture behind its coordinates.
   struct ImageOperands {
-    Values bias, lod, gradients, offsets;     ///< those that there are
-    std::array<std::int8_t, 3> offset{};      ///< constant
-    std::vector<std::uint32_t> four_offsets;  ///< of a gather: eight words
+    Values bias, lod, gradients, offsets, sample;  ///< those that there are
+    std::array<std::int8_t, 3> offset{};           ///< constant
+    std::vector<std::uint32_t> four_offsets;       ///< of a gather: eight words
   };
   [[nodiscard]] std::uint16_t texture_of(Id image, const spirv::Instruction& i) const;
+  [[nodiscard]] std::uint16_t texture_of_one_sample(Id image, const spirv::Instruction& i) const;
   [[nodiscard]] std::uint16_t texture_index(const models::TextureBinding& binding);
   void combine(const spirv::Instruction& i);
   [[nodiscard]] ImageOperands image_operands(const spirv::Instruction& i, std::size_t mask_at);
@@ -200,8 +201,9 @@ class Lowering {
   void fetch(const spirv::Instruction& i);
   void gather(const spirv::Instruction& i);
   void query_lod(const spirv::Instruction& i);
-  void image_size(const spirv::Instruction& i);
-  void image_levels(const spirv::Instruction& i);
+  void image_size(const spirv::Instruction& i, std::uint16_t texture);
+  void image_levels(const spirv::Instruction& i, std::uint16_t texture);
+  [[nodiscard]] bool of_samples(const spirv::Instruction& i);
   /// Emits an operation: its four results.
   Values ask(const spirv::Instruction& i, const models::TextureOperation& operation, const Values& words);
   void derivative(const spirv::Instruction& i);

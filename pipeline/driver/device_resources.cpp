@@ -31,6 +31,17 @@ void bring_texels(models::DeviceMemory& memory, const models::SurfaceLayout& sur
 
 }  // namespace
 
+models::TextureSize size_of(const traces::CommandStream& stream, const traces::TextureDescriptor& bound) {
+  const traces::Image& image = stream.images[bound.image];
+  const std::uint32_t layers = models::is_array(bound.view) ? bound.layers : 0;
+  return {traces::level_width(image, bound.first_level),
+          traces::level_height(image, bound.first_level),
+          traces::level_count(stream, bound),
+          traces::level_depth(image, bound.first_level),
+          models::is_cube(bound.view) ? layers / models::kCubeFaces : layers,
+          models::is_multisampled(bound.view) ? image.samples : 0};
+}
+
 DeviceResources::DeviceResources(const traces::CommandStream& stream, models::DeviceMemory& memory,
                                  TextureFills& fills, models::Tiling tiling)
     : stream_(stream),

@@ -11,11 +11,16 @@
 
 #include "models/memory/device_memory.h"
 #include "models/memory/surface.h"
+#include "models/shader/warp.h"
 #include "models/texture/layout.h"
 #include "pipeline/driver/texture_fills.h"
 #include "traces/command_stream.h"
 
 namespace quadrille::pipeline {
+
+/// What programs are told of the size of a texture.
+[[nodiscard]] models::TextureSize size_of(const traces::CommandStream& stream,
+                                          const traces::TextureDescriptor& bound);
 
 class DeviceResources {
  public:

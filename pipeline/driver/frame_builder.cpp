@@ -299,18 +299,15 @@ class FrameBuilder {
       const DeviceResources::Texture texture = resources_.texture(bound);
       states.push_back({texture.view, sampler(program, use, bound), texture.fill,
                         sampled_.note(bound.image, image, texture.view)});
-      const std::uint32_t layers = models::is_array(bound.view) ? bound.layers : 0;
-      sizes.push_back({traces::level_width(image, bound.first_level),
-                       traces::level_height(image, bound.first_level), traces::level_count(stream_, bound),
-                       traces::level_depth(image, bound.first_level),
-                       models::is_cube(bound.view) ? layers / models::kCubeFaces : layers});
+      sizes.push_back(size_of(stream_, bound));
     }
   }
 
-  /// The texture's own, or the one that the program names with it; any, if it is used without.
+  /// The texture's own, or the one that the program names with it; any, if it is used without or has several
+  /// samples, which are fetched.
   models::SamplerState sampler(const models::Program& program, const models::TextureBinding& use,
                                const traces::TextureDescriptor& bound) {
-    if (use.sampler_binding == models::kNoSampler) return {};
+    if (use.sampler_binding == models::kNoSampler || models::is_multisampled(use.view)) return {};
     traces::Index index = bound.sampler;
     if (use.sampler_binding != models::kCombined) {
       const auto* own = this->bound(&traces::DescriptorSet::samplers, use.sampler_set, use.sampler_binding);

@@ -187,11 +187,13 @@ VkComponentMapping vk_components(const models::ComponentMapping& components) {
 VkImageViewType vk_view_type(traces::ViewKind kind) {
   switch (kind) {
     case traces::ViewKind::k1D: return VK_IMAGE_VIEW_TYPE_1D;
-    case traces::ViewKind::k2D: return VK_IMAGE_VIEW_TYPE_2D;
+    case traces::ViewKind::k2D:
+    case traces::ViewKind::k2DMultisampled: return VK_IMAGE_VIEW_TYPE_2D;
     case traces::ViewKind::k3D: return VK_IMAGE_VIEW_TYPE_3D;
     case traces::ViewKind::kCube: return VK_IMAGE_VIEW_TYPE_CUBE;
     case traces::ViewKind::k1DArray: return VK_IMAGE_VIEW_TYPE_1D_ARRAY;
-    case traces::ViewKind::k2DArray: return VK_IMAGE_VIEW_TYPE_2D_ARRAY;
+    case traces::ViewKind::k2DArray:
+    case traces::ViewKind::k2DMultisampledArray: return VK_IMAGE_VIEW_TYPE_2D_ARRAY;
     case traces::ViewKind::kCubeArray: return VK_IMAGE_VIEW_TYPE_CUBE_ARRAY;
   }
   QUADRILLE_CHECK(false, "view kind {}", static_cast<int>(kind));

@@ -13,8 +13,9 @@ TEST_CASE("validate: samples a pixel, and what they are resolved to") {
   const auto begin = [](auto& s) -> BeginPass& { return command<BeginPass>(s, 0); };
   expect({
       {"3 samples a pixel; 1, 2, 4 and 8 are possible", [](auto& s) { s.images[1].samples = 3; }},
-      {"image 0 'white': only an attachment that is not sampled has 4 samples",
-       [](auto& s) { s.images[0].samples = 4; }},
+      {"image 0 'white': only an attachment has 4 samples", [](auto& s) { s.images[0].samples = 4; }},
+      {"descriptor set 0 binding 1: a view '2d-ms' of image 0 'white' of 1 samples",
+       [](auto& s) { s.descriptor_sets[0].textures[0].view = ViewKind::k2DMultisampled; }},
       {"depth attachment: image 2 of 1 samples a pixel beside one of 4",
        [](auto& s) {
          s.images[1].usage = kColorAttachment;

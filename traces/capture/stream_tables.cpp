@@ -64,7 +64,7 @@ Index StreamTables::attachment(Handle handle) {
   image.layers = from.layers;
   image.samples = from.samples;
   image.usage = depth ? traces::kDepthAttachment : traces::kColorAttachment;
-  if ((from.usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0 && from.samples == 1) image.usage |= traces::kSampled;
+  if ((from.usage & VK_IMAGE_USAGE_SAMPLED_BIT) != 0) image.usage |= traces::kSampled;
   image.texels = attachment_texels(from);
   const Index index = append(stream.images, std::move(image));
   attachments_[handle] = {index, from.writes};
@@ -97,11 +97,14 @@ bool StreamTables::stored(Handle image) const {
 
 traces::TextureDescriptor StreamTables::texture(const ViewObject& view) {
   traces::TextureDescriptor made;
-  made.view = view_kind_of(view.type);
+  made.view = view_kind_of(view.type, object(device_.images, view.image, "image").samples);
   for (std::size_t c = 0; c < 4; ++c) made.components[c] = component_of(view.swizzle[c], c);
   if (models::is_array(made.view) || models::is_cube(made.view)) made.layers = view.layers;
   made.first_level = view.level;
   made.levels = view.levels;
+  const bool multisampled = models::is_multisampled(made.view);
+  if (multisampled && !stored(view.image))
+    throw user_error("image {} of several samples a pixel, which no pass of the frame has drawn", view.image);
   if (stored(view.image)) {
     made.image = attachment(view.image);
     made.layer = view.layer;

@@ -290,15 +290,17 @@ traces::Filter filter_of(std::uint32_t value, std::string& unsupported) {
 
 }  // namespace
 
-traces::ViewKind view_kind_of(std::uint32_t value) {
+traces::ViewKind view_kind_of(std::uint32_t value, std::uint32_t samples) {
   using traces::ViewKind;
+  const bool multisampled = samples > 1;
   switch (value) {
     case VK_IMAGE_VIEW_TYPE_1D: return ViewKind::k1D;
-    case VK_IMAGE_VIEW_TYPE_2D: return ViewKind::k2D;
+    case VK_IMAGE_VIEW_TYPE_2D: return multisampled ? ViewKind::k2DMultisampled : ViewKind::k2D;
     case VK_IMAGE_VIEW_TYPE_3D: return ViewKind::k3D;
     case VK_IMAGE_VIEW_TYPE_CUBE: return ViewKind::kCube;
     case VK_IMAGE_VIEW_TYPE_1D_ARRAY: return ViewKind::k1DArray;
-    case VK_IMAGE_VIEW_TYPE_2D_ARRAY: return ViewKind::k2DArray;
+    case VK_IMAGE_VIEW_TYPE_2D_ARRAY:
+      return multisampled ? ViewKind::k2DMultisampledArray : ViewKind::k2DArray;
     case VK_IMAGE_VIEW_TYPE_CUBE_ARRAY: return ViewKind::kCubeArray;
     default: throw user_error("VkImageViewType {} is not supported", value);
   }

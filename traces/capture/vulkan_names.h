@@ -31,7 +31,7 @@ namespace quadrille::capture {
 [[nodiscard]] traces::LoadOp load_of(std::uint32_t value);
 [[nodiscard]] traces::StoreOp store_of(std::uint32_t value);
 
-[[nodiscard]] traces::ViewKind view_kind_of(std::uint32_t value);
+[[nodiscard]] traces::ViewKind view_kind_of(std::uint32_t value, std::uint32_t samples);
 /// What a VkComponentSwizzle shows as component `c`.
 [[nodiscard]] models::ComponentSource component_of(std::uint32_t value, std::size_t c);
 [[nodiscard]] traces::ImageKind image_kind_of(std::uint32_t value);

@@ -53,8 +53,6 @@ TEST_CASE("unsupported features are refused by name and line") {
              Catch::Contains("test.frag:") && Catch::Contains("10 words"));
   CHECK_THAT(error_of("color = texelFetch(t, i.x);", "layout(set=0,binding=0) uniform samplerBuffer t;"),
              Catch::Contains("'t'") && Catch::Contains("sampler"));
-  CHECK_THAT(error_of("color = texelFetch(t, i.xy, 0);", "layout(set=0,binding=0) uniform sampler2DMS t;"),
-             Catch::Contains("'t'") && Catch::Contains("one sample"));
   CHECK_THAT(error_of("color = texture(t[0], a.xy);", "layout(set=0,binding=0) uniform sampler2D t[257];"),
              Catch::Contains("at most 256"));
   CHECK_THAT(error_of("s[i.x].x[0] = 1; color = a;", "layout(set=0,binding=0) buffer S { int x[]; } s[2];"),
@@ -93,8 +91,6 @@ TEST_CASE("a refusal names what is not supported, where it is, and what to write
              Catch::Contains("OpIAddCarry"));
   CHECK_THAT(error_of("color = vec4(subgroupElect());", "#extension GL_KHR_shader_subgroup_basic : require"),
              Catch::Contains("test.frag:5:") && Catch::Contains("OpGroupNonUniformElect"));
-  CHECK_THAT(error_of("color = texelFetch(t, i.xy, 0);", "layout(set=0,binding=0) uniform sampler2DMS t;"),
-             Catch::Contains("test.frag:5:"));
 }
 
 TEST_CASE("an entry point of another name or stage is named") {

@@ -1,7 +1,10 @@
 /// Texture instructions: operands, grouping into clauses, and results that arrive late.
+#include "models/base/error.h"
+#include "models/shader/isa.h"
 #include "tests/pipeline/compiler/shader_runner.h"
 
 #include <catch2/catch.hpp>
+#include <spirv/unified1/spirv.hpp>
 
 #include <algorithm>
 
@@ -135,6 +138,64 @@ TEST_CASE("textures: a vertex shader samples at an explicit level") {
       input);
   CHECK(std::bit_cast<float>(out[0][9]) == 59.0f);
   CHECK(std::bit_cast<float>(out[1][9]) == 9.0f);
+}
+
+namespace {
+
+/// What is said of a program whose textures are turned into such of several samples, or back.
+std::string said_of_samples(const std::string& body, const std::string& sampler, std::uint32_t multisampled) {
+  std::vector<std::uint32_t> words =
+      fragment_spirv(fragment_source(body, "layout(set=0,binding=0) uniform " + sampler + " t;"));
+  for (std::size_t at = 5; at < words.size(); at += words[at] >> 16)
+    if ((words[at] & 0xffff) == spv::OpTypeImage) words[at + 6] = multisampled;
+  try {
+    (void)compile_pipeline(vertex_spirv(plain_vertex_source()), "v", words, "f");
+  } catch (const UserError& error) { return error.what(); }
+  return "compiles";
+}
+
+}  // namespace
+
+TEST_CASE("textures: samples of a texel are fetched by a word of their own, and are counted") {
+  const models::Program p = compile_fragment(fragment_source(
+      "ivec3 n = textureSize(s); color = texelFetch(t, i.xy, i.z) + texelFetch(s, i.xyz, 2) + "
+      "vec4(textureSize(t), n.z + textureSamples(s), 0);",
+      "layout(set=1, binding=0) uniform sampler2DMS t; layout(set=1, binding=1) uniform "
+      "sampler2DMSArray s;"));
+  REQUIRE(p.textures.size() == 2);
+  CHECK(p.textures[0].view == models::ViewKind::k2DMultisampled);
+  CHECK(p.textures[1].view == models::ViewKind::k2DMultisampledArray);
+  REQUIRE(p.texture_operations.size() == 2);
+  for (const models::TextureOperation& operation : p.texture_operations) {
+    CHECK(operation.ask == models::TextureAsk::kFetch);
+    CHECK(operation.level == models::LevelFrom::kLevel);
+  }
+  const std::string listing = models::disassemble(p);
+  CHECK_THAT(listing, Catch::Contains(" 2d-ms\n") && Catch::Contains(" 2d-ms-array\n"));
+  CHECK(models::disassemble(models::assemble(listing, p.name)) == listing);
+}
+
+TEST_CASE("textures: of several samples a texel nothing but fetches and sizes is asked") {
+  const auto refused = [](const char* body, const char* what) {
+    const std::string said = said_of_samples(body, "sampler2D", 1);
+    INFO(said);
+    CHECK_THAT(said, Catch::Contains("test.frag:5:") && Catch::Contains(what));
+    CHECK(said.find('\n') == std::string::npos);
+  };
+  refused("color = texture(t, a.xy);", "OpImageSampleImplicitLod of a texture of several samples");
+  refused("color = textureLod(t, a.xy, 1.0);", "OpImageSampleExplicitLod of a texture of several samples");
+  refused("color = textureProj(t, a.xyz);", "OpImageSampleProjImplicitLod of a texture of several samples");
+  refused("color = textureGather(t, a.xy);", "OpImageGather of a texture of several samples");
+  refused("color = vec4(textureQueryLod(t, a.xy), 0, 0);", "OpImageQueryLod of a texture of several samples");
+  refused("color = vec4(textureQueryLevels(t));", "OpImageQueryLevels of a texture of several samples");
+  refused("color = vec4(textureSize(t, 0), 0, 0);", "OpImageQuerySizeLod of a texture of several samples");
+  refused("color = texelFetch(t, i.xy, 0);", "without a sample's number");
+  CHECK_THAT(said_of_samples("color = texelFetch(t, i.xy, 1);", "sampler2DMS", 0),
+             Catch::Contains("test.frag:5:") && Catch::Contains("a sample's number of a texture of one"));
+  CHECK_THAT(said_of_samples("color = vec4(textureSize(t), 0, 0);", "sampler2DMS", 0),
+             Catch::Contains("test.frag:5:") && Catch::Contains("OpImageQuerySize"));
+  CHECK_THAT(said_of_samples("color = vec4(textureSamples(t));", "sampler2DMS", 0),
+             Catch::Contains("test.frag:5:") && Catch::Contains("OpImageQuerySamples"));
 }
 
 }  // namespace quadrille::pipeline
