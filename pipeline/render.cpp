@@ -260,9 +260,10 @@ PreparedFrame::~PreparedFrame() = default;
 std::string PreparedFrame::needs(const MachineConfig& config) {
   const models::Precision p = config.precision();
   const ShaderTarget t = config.shader_target();
-  std::string text = fmt::format("{} {} {} {} {} {} {} {} {}", config.gpu.memory_mib.value(), p.subpixel_bits,
-                                 p.subtexel_bits, p.lod_bits, p.linear_log2, static_cast<int>(p.anisotropic_footprint), t.warp_slots,
-                                 t.register_rows, static_cast<int>(config.texture.layout.value()));
+  std::string text =
+      fmt::format("{} {} {} {} {} {} {} {} {}", config.gpu.memory_mib.value(), p.subpixel_bits,
+                  p.subtexel_bits, p.lod_bits, p.linear_log2, static_cast<int>(p.anisotropic_footprint),
+                  t.warp_slots, t.register_rows, static_cast<int>(config.texture.layout.value()));
   for (const models::IssueTiming::Class& c : t.timing.classes)
     text += fmt::format(" {}/{}", c.issue, c.latency);
   return text;
