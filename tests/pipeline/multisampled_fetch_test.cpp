@@ -105,6 +105,13 @@ TEST_CASE("multisampled fetch: encoded lines of samples are what later passes fe
     CHECK(faults_on(little_cache, stream) == "");
     CHECK(faults_on({}, stream) == "");
   }
+  // The machine of this seed encodes both.
+  const hw::contract::Outcome outcome =
+      hw::contract::run_forked(machine_builder(multisampled_fetch_stream(1), 5), {});
+  std::int64_t reads = 0;
+  for (const auto& [name, value] : outcome.figures)
+    if (name.find("texture") != std::string::npos && name.ends_with("encoded_reads")) reads += value;
+  CHECK(reads > 0);
 }
 
 TEST_CASE("multisampled fetch: a view finds each sample in its tile's plane, and in all layers") {
