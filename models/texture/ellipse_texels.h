@@ -9,9 +9,8 @@
 /// What bounds the work: the shorter axis is widened until it is at least the longer one over the sampler's
 /// greatest anisotropy. The level is that of the shorter of the two changes, or of the axis where that is
 /// widened more, so the shorter axis is below two texels. Where the sampler's limits or a bias ask for a
-/// finer
-/// level, the ellipse shrinks to such a size: it is as sharp as they ask for. [M: Mesa's lavapipe takes the
-/// same ellipse, circle, weights and level, without the limits]
+/// finer level, the ellipse shrinks to such a size: it is as sharp as they ask for. [M: Mesa's lavapipe takes
+/// the same ellipse, circle, weights and level, without the limits]
 #pragma once
 
 #include <array>
