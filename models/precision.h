@@ -6,8 +6,8 @@
 
 namespace quadrille::models {
 
-/// What an anisotropic filter takes of a level. The ellipse is the one that a round pixel covers. [P: Heckbert
-/// 1989]
+/// What an anisotropic filter takes of a level. The ellipse is the one that a round pixel covers. [P:
+/// Heckbert 1989]
 enum class AnisotropicFootprint : std::uint8_t {
   kLongerDifference,  ///< samples along the longer of the pixel's two differences, as in Vulkan's equations
   kEllipseAxis,       ///< samples along the longer axis of the ellipse

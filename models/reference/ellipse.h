@@ -15,8 +15,8 @@ struct EllipseAxes {
 /// Of the changes of a place to the next pixel along x and y.
 [[nodiscard]] EllipseAxes ellipse_axes(const Change& along_x, const Change& along_y);
 
-/// The ellipse that is filtered over: no larger than a level allows, a texel wider, and at most `most` times as
-/// long as it is wide.
+/// The ellipse that is filtered over: no larger than a level allows, a texel wider, and at most `most`
+/// times as long as it is wide.
 [[nodiscard]] EllipseAxes filtered_ellipse(EllipseAxes axes, double most);
 
 /// exp(-2 r^2) at a distance from the centre that is r of the way to the edge; 0 beyond the edge.

@@ -23,8 +23,8 @@ namespace quadrille::models::reference {
 
 enum class Mode : std::uint8_t { kGiven, kIdeal };
 
-/// What an anisotropic filter takes: samples along a pixel's longer difference or along the longer axis of its
-/// ellipse, or the texels within the ellipse by their weights.
+/// What an anisotropic filter takes: samples along a pixel's longer difference or along the longer axis of
+/// its ellipse, or the texels within the ellipse by their weights.
 enum class Anisotropy : std::uint8_t { kLongerDifference, kEllipseAxis, kEllipse };
 
 /// Fractional bits, used in mode *given* only. Values are rounded to nearest, ties up (floor(x * 2^bits +

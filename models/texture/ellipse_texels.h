@@ -1,16 +1,16 @@
 /// The texels within the ellipse that a pixel covers of a level, and their weights: the elliptical weighted
 /// average. [P: Greene and Heckbert 1986], [P: Heckbert 1989]
 ///
-/// A round pixel whose radius is the distance to the next one covers an ellipse J J' of the level, J being the
-/// two changes of the place. A texel at r of the way to the edge weighs exp(-2 r^2), and one beyond it
+/// A round pixel whose radius is the distance to the next one covers an ellipse J J' of the level, J being
+/// the two changes of the place. A texel at r of the way to the edge weighs exp(-2 r^2), and one beyond it
 /// nothing. A texel is no point, so a circle of one texel is added to the ellipse (J J' + 1). So the smallest
 /// ellipse has a radius of one texel, and none is so thin that it misses all of them.
 ///
 /// What bounds the work: the shorter axis is widened until it is at least the longer one over the sampler's
 /// greatest anisotropy. The level is that of the shorter of the two changes, or of the axis where that is
-/// widened more, so the shorter axis is below two texels. Where the sampler's limits or a bias ask for a finer
-/// level, the ellipse shrinks to such a size: it is as sharp as they ask for. [M: Mesa's lavapipe takes the
-/// same ellipse, circle, weights and level, without the limits]
+/// widened more, so the shorter axis is below two texels. Where the sampler's limits or a bias ask for a
+/// finer level, the ellipse shrinks to such a size: it is as sharp as they ask for. [M: Mesa's lavapipe takes
+/// the same ellipse, circle, weights and level, without the limits]
 #pragma once
 
 #include <array>

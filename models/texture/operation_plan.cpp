@@ -3,8 +3,8 @@
 ///
 /// Everything is decided lane by lane or quad by quad: which other quads share the warp changes nothing.
 /// A footprint is a 2x2 of one slice; a level of a lane has one, or two in a volume, or one for each sample
-/// along the longer axis of its pixel's footprint. Where a lane takes the texels of an ellipse, its footprints
-/// are the 2x2 that hold them; of the level that it reads, or the finer one of two.
+/// along the longer axis of its pixel's footprint. Where a lane takes the texels of an ellipse, its
+/// footprints are the 2x2 that hold them; of the level that it reads, or the finer one of two.
 #include "models/base/error.h"
 #include "models/texture/cube.h"
 #include "models/texture/ellipse_taps.h"
@@ -144,8 +144,8 @@ class OperationPlanner {
     }
   }
 
-  /// The centre of a lane's ellipse along an axis, in texels of a level of that size. Where the image does not
-  /// repeat, it is held where no ellipse reaches more of the image than it would from farther away.
+  /// The centre of a lane's ellipse along an axis, in texels of a level of that size. Where the image does
+  /// not repeat, it is held where no ellipse reaches more of the image than it would from farther away.
   [[nodiscard]] static float centre(float place, std::int32_t size, Wrap wrap) {
     constexpr float kFar = 64.0f;
     const bool repeats = wrap == Wrap::kRepeat || wrap == Wrap::kMirroredRepeat;

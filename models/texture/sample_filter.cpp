@@ -175,8 +175,8 @@ Way way_of(Format format) {
   return format == Format::kR8G8B8A8Srgb || format == Format::kB8G8R8A8Srgb ? Way::kSrgb : Way::kAny;
 }
 
-/// A cube's corners, comparisons, ellipses and borders of an own colour are done with numbers. So that no lane's way
-/// depends on another's, all of such plans is.
+/// A cube's corners, comparisons, ellipses and borders of an own colour are done with numbers. So that no
+/// lane's way depends on another's, all of such plans is.
 Way way_of(const TexturePlan& plan, Format format) {
   const bool numbers = plan.border == BorderColor::kOwn ||
                        (plan.general && (plan.compares || plan.weighed || is_cube(plan.kind) ||

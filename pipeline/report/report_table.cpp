@@ -237,7 +237,7 @@ std::string textures_text(const Figures& f) {
     return whole == 0 ? 0.0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
   };
   std::string out = fmt::format(
-      "\nTEXTURES  {} of {} by bytes asked of the L2 cache\n  {:>12}{:>8}{:>8}{:>8}{:>12}{:>8}{:>12}{:>12}  "
+      "\nTEXTURES  {} of {} by bytes asked of the L2 cache\n  {:>12}{:>8}{:>10}{:>8}{:>12}{:>8}{:>12}{:>12}  "
       "{}\n",
       order.size(), f.textures->size(), "lanes", "linear", "2 levels", "level", "look-ups", "missed",
       "L2 bytes", "memory", "texture");
@@ -246,7 +246,7 @@ std::string textures_text(const Figures& f) {
     double level = 0;
     for (std::size_t l = 0; l < use.levels.size(); ++l)
       level += static_cast<double>(l) * static_cast<double>(use.levels[l]);
-    out += fmt::format("  {:>12}{:>6.0f} %{:>6.0f} %{:>8.2f}{:>12}{:>6.1f} %{:>12}{:>12}  {} {}x{} {}\n",
+    out += fmt::format("  {:>12}{:>6.0f} %{:>8.0f} %{:>8.2f}{:>12}{:>6.1f} %{:>12}{:>12}  {} {}x{} {}\n",
                        grouped(use.lanes), share(use.linear, use.lanes), share(use.two_levels, use.lanes),
                        use.lanes == 0 ? 0.0 : level / static_cast<double>(use.lanes), grouped(use.look_ups),
                        share(use.misses, use.look_ups), grouped(use.read_bytes), grouped(t->memory_bytes),

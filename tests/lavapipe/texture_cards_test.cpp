@@ -110,8 +110,8 @@ TEST_CASE("lavapipe: every operation on every kind of image has the driver's num
   CHECK(drawn >= 100);
 }
 
-/// The driver limits no ellipse by the sampler's greatest anisotropy, so all are held beside ours of 16. Where
-/// gradients are given it still takes the ellipse of its own differences.
+/// The driver limits no ellipse by the sampler's greatest anisotropy, so all are held beside ours of 16.
+/// Where gradients are given it still takes the ellipse of its own differences.
 TEST_CASE("lavapipe: an anisotropic filter weighs the texels of an ellipse as the driver does") {
   VulkanRenderer* const vulkan = renderer();
   if (vulkan == nullptr) return;

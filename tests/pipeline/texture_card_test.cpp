@@ -3,6 +3,7 @@
 #include "tests/pipeline/texture_card.h"
 #include "studies/given_reference.h"
 #include "tests/pipeline/machine_specimen.h"
+#include "tests/pipeline/random_machine.h"
 
 #include <catch2/catch.hpp>
 
@@ -107,5 +108,17 @@ TEST_CASE("texture cards: random machines draw the functional run's pixels of ev
   for (std::size_t i = 0; i < cards.size(); i += 9) {
     INFO(name_of(cards[i]));
     CHECK(machine_faults(card_stream(cards[i]), i + 1) == "");
+  }
+}
+
+TEST_CASE("texture cards: random machines that take ellipses draw the functional run's pixels") {
+  const std::vector<TextureCard> cards = anisotropy_cards();
+  for (std::size_t i = 0; i < cards.size(); i += 2) {
+    const std::uint64_t seed = 6 * i + 4;
+    pipeline::MachineConfig machine;
+    randomize(machine, seed);
+    REQUIRE(machine.gpu.anisotropic_footprint == models::AnisotropicFootprint::kEllipse);
+    INFO(name_of(cards[i]) << " on machine " << seed);
+    CHECK(machine_faults(card_stream(cards[i]), seed) == "");
   }
 }

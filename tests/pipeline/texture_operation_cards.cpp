@@ -25,7 +25,9 @@ traces::Image image_of(ViewKind view, Format format, std::uint64_t seed) {
     case ViewKind::kCube: return card_image(format, ImageKind::k2D, {16, 16, 1}, 6, 5, seed);
     case ViewKind::kCubeArray: return card_image(format, ImageKind::k2D, {16, 16, 1}, 18, 5, seed);
     case ViewKind::k2DArray: return card_image(format, ImageKind::k2D, {16, 32, 1}, 7, 6, seed);
-    case ViewKind::k2D: break;
+    case ViewKind::k2D:
+    case ViewKind::k2DMultisampled:  // only attachments have several samples
+    case ViewKind::k2DMultisampledArray: break;
   }
   return card_image(format, 16, 32, 6, seed);
 }
