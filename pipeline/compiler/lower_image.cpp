@@ -109,8 +109,8 @@ std::uint16_t Lowering::texture_of(Id image, const spirv::Instruction& i) const 
   return texture->second;
 }
 
-/// The same of a question that has no answer for several samples a texel. The validator refuses all others that
-/// are none of a fetch.
+/// The same of a question that has no answer for several samples a texel. The validator refuses all else that
+/// such a texture is not fetched or measured by.
 std::uint16_t Lowering::texture_of_one_sample(Id image, const spirv::Instruction& i) const {
   const std::uint16_t texture = texture_of(image, i);
   if (models::is_multisampled(shader_.textures[texture].view))
