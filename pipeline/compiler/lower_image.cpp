@@ -109,12 +109,12 @@ std::uint16_t Lowering::texture_of(Id image, const spirv::Instruction& i) const 
   return texture->second;
 }
 
-/// The same of an instruction that one of several samples a texel does not have.
+/// The same of a question that has no answer for several samples a texel. The validator refuses all else that
+/// such a texture is not fetched or measured by.
 std::uint16_t Lowering::texture_of_one_sample(Id image, const spirv::Instruction& i) const {
   const std::uint16_t texture = texture_of(image, i);
   if (models::is_multisampled(shader_.textures[texture].view))
-    throw unsupported(i,
-                      fmt::format("{} of a texture of several samples (use texelFetch)", spirv::name_of(i)));
+    throw unsupported(i, fmt::format("{} of a texture of several samples", spirv::name_of(i)));
   return texture;
 }
 
@@ -147,10 +147,10 @@ bool Lowering::image(const spirv::Instruction& i) {
     case spv::OpImageGather:
     case spv::OpImageDrefGather: gather(i); return true;
     case spv::OpImageQueryLod: query_lod(i); return true;
-    case spv::OpImageQuerySizeLod: image_size(i, texture_of_one_sample(i.operands[0], i)); return true;
     case spv::OpImageQuerySize:
-    case spv::OpImageQuerySamples: return of_samples(i);
-    case spv::OpImageQueryLevels: image_levels(i, texture_of_one_sample(i.operands[0], i)); return true;
+    case spv::OpImageQuerySizeLod: image_size(i); return true;
+    case spv::OpImageQuerySamples: levels_or_samples(i, texture_of(i.operands[0], i)); return true;
+    case spv::OpImageQueryLevels: levels_or_samples(i, texture_of_one_sample(i.operands[0], i)); return true;
     case spv::OpDPdx:
     case spv::OpDPdy:
     case spv::OpFwidth:
@@ -228,7 +228,7 @@ Values Lowering::ask(const spirv::Instruction& i, const TextureOperation& operat
 
 void Lowering::sample(const spirv::Instruction& i) {
   TextureOperation operation;
-  operation.texture = texture_of_one_sample(i.operands[0], i);
+  operation.texture = texture_of(i.operands[0], i);
   operation.compare = compares(i.op);
   if (is_implicit(i.op) && shader_.stage == models::ShaderStage::kVertex)
     throw unsupported(i, "implicit level of detail in a vertex shader (use textureLod)");
@@ -274,15 +274,10 @@ void Lowering::fetch(const spirv::Instruction& i) {
   operation.texture = texture_of(i.operands[0], i);
   operation.ask = TextureAsk::kFetch;
   const ImageOperands operands = image_operands(i, 2);
-  const bool multisampled = models::is_multisampled(shader_.textures[operation.texture].view);
-  if (operands.sample.empty() == multisampled)
-    throw unsupported(i, multisampled ? "a texel of several samples without a sample's number"
-                                      : "a sample's number of a texture of one sample");
-  if (multisampled &&
-      (!operands.lod.empty() || !operands.offsets.empty() || operands.offset != TextureOperation{}.offset))
-    throw unsupported(i, "a level or an offset of a texture of several samples");
   Values words = value(i.operands[1]);
-  append(words, multisampled ? operands.sample : operands.lod.empty() ? Values{literal(0u)} : operands.lod);
+  append(words, !operands.sample.empty() ? operands.sample
+                : operands.lod.empty()   ? Values{literal(0u)}
+                                         : operands.lod);
   append(words, operands.offsets);
   operation.offset = operands.offset;
   operation.offsets = !operands.offsets.empty();
@@ -292,7 +287,7 @@ void Lowering::fetch(const spirv::Instruction& i) {
 /// With four offsets each component is the upper left texel of a gather of its own.
 void Lowering::gather(const spirv::Instruction& i) {
   TextureOperation operation;
-  operation.texture = texture_of_one_sample(i.operands[0], i);
+  operation.texture = texture_of(i.operands[0], i);
   operation.ask = TextureAsk::kGather;
   operation.compare = compares(i.op);
   const ImageOperands operands = image_operands(i, 3);
@@ -337,7 +332,9 @@ void Lowering::query_lod(const spirv::Instruction& i) {
   define(i, std::move(result));
 }
 
-void Lowering::image_size(const spirv::Instruction& i, std::uint16_t texture) {
+/// Of several samples there is one level, which is not named.
+void Lowering::image_size(const spirv::Instruction& i) {
+  const std::uint16_t texture = texture_of(i.operands[0], i);
   const ViewKind view = shader_.textures[texture].view;
   const Value level = models::is_multisampled(view) ? literal(0u) : scalar(i.operands[1]);
   if (view == ViewKind::k2D || view == ViewKind::k2DMultisampled)
@@ -349,19 +346,8 @@ void Lowering::image_size(const spirv::Instruction& i, std::uint16_t texture) {
   define(i, std::move(result));
 }
 
-void Lowering::image_levels(const spirv::Instruction& i, std::uint16_t texture) {
+void Lowering::levels_or_samples(const spirv::Instruction& i, std::uint16_t texture) {
   define(i, {registers(build_.emit_wide(Op::kTexDims, literal(0u), {}, {}, texture), 4)[3]});
-}
-
-/// Size and number of the samples of a texture that has several. Of others, and of storage images, they are
-/// not known.
-bool Lowering::of_samples(const spirv::Instruction& i) {
-  const auto found = textures_.find(i.operands[0]);
-  if (found == textures_.end() || !models::is_multisampled(shader_.textures[found->second].view))
-    return false;
-  if (i.op == spv::OpImageQuerySize) image_size(i, found->second);
-  else image_levels(i, found->second);
-  return true;
 }
 
 /// Plain derivatives are the fine ones: the difference along the lane's own row or column of the quad.

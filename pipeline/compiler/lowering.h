@@ -201,9 +201,8 @@ class Lowering {
   void fetch(const spirv::Instruction& i);
   void gather(const spirv::Instruction& i);
   void query_lod(const spirv::Instruction& i);
-  void image_size(const spirv::Instruction& i, std::uint16_t texture);
-  void image_levels(const spirv::Instruction& i, std::uint16_t texture);
-  [[nodiscard]] bool of_samples(const spirv::Instruction& i);
+  void image_size(const spirv::Instruction& i);
+  void levels_or_samples(const spirv::Instruction& i, std::uint16_t texture);
   /// Emits an operation: its four results.
   Values ask(const spirv::Instruction& i, const models::TextureOperation& operation, const Values& words);
   void derivative(const spirv::Instruction& i);

@@ -47,7 +47,6 @@ struct Advice {
 constexpr auto kAdvice = std::to_array<Advice>({
     {"OpImageRead", "imageLoad; use a sampler2D"},
     {"OpImageWrite", "imageStore; write to the colour output"},
-    {"OpImageQuerySize", "imageSize; use textureSize of a sampler2D or sampler2DMS"},
     {"OpIAddCarry", "uaddCarry; the carry is sum < a"},
     {"OpISubBorrow", "usubBorrow; the borrow is a < b"},
     {"OpUMulExtended", "umulExtended; multiply 16-bit halves"},
