@@ -128,6 +128,35 @@ constexpr std::uint32_t kCopy[] = {
     7,          0x13,       0xe,     0x12,    0x3003e, 9,       0x13,    0x100fd, 0x10038,
 };
 
+//     #version 450
+//     layout(set = 0, binding = 0) uniform sampler2D picture;
+//     layout(location = 0) in vec2 place;
+//     void main() { gl_FragDepth = texture(picture, place).r; }
+constexpr std::uint32_t kCopyDepth[] = {
+    0x7230203,  0x10000,    0x8000b, 0x17,    0,       0x20011, 1,       0x6000b, 1,       0x4c534c47,
+    0x6474732e, 0x3035342e, 0,       0x3000e, 0,       1,       0x7000f, 4,       4,       0x6e69616d,
+    0,          8,          0x10,    0x30010, 4,       7,       0x30010, 4,       0xc,     0x40047,
+    8,          0xb,        0x16,    0x40047, 0xc,     0x22,    0,       0x40047, 0xc,     0x21,
+    0,          0x40047,    0x10,    0x1e,    0,       0x20013, 2,       0x30021, 3,       2,
+    0x30016,    6,          0x20,    0x40020, 7,       3,       6,       0x4003b, 7,       8,
+    3,          0x90019,    9,       6,       1,       0,       0,       0,       1,       0,
+    0x3001b,    0xa,        9,       0x40020, 0xb,     0,       0xa,     0x4003b, 0xb,     0xc,
+    0,          0x40017,    0xe,     6,       2,       0x40020, 0xf,     1,       0xe,     0x4003b,
+    0xf,        0x10,       1,       0x40017, 0x12,    6,       4,       0x50036, 2,       4,
+    0,          3,          0x200f8, 5,       0x4003d, 0xa,     0xd,     0xc,     0x4003d, 0xe,
+    0x11,       0x10,       0x50057, 0x12,    0x13,    0xd,     0x11,    0x50051, 6,       0x16,
+    0x13,       0,          0x3003e, 8,       0x16,    0x100fd, 0x10038,
+};
+
+//     #version 450
+//     void main() {}
+constexpr std::uint32_t kNothing[] = {
+    0x7230203,  0x10000,    0x8000b, 6,       0,       0x20011, 1,       0x6000b, 1, 0x4c534c47,
+    0x6474732e, 0x3035342e, 0,       0x3000e, 0,       1,       0x5000f, 4,       4, 0x6e69616d,
+    0,          0x30010,    4,       7,       0x20013, 2,       0x30021, 3,       2, 0x50036,
+    2,          4,          0,       3,       0x200f8, 5,       0x100fd, 0x10038,
+};
+
 // clang-format on
 
 std::span<const std::uint32_t> words_of(OwnShader which) {
@@ -136,9 +165,11 @@ std::span<const std::uint32_t> words_of(OwnShader which) {
     case OwnShader::kClear: return kClear;
     case OwnShader::kClearUnsigned: return kClearUnsigned;
     case OwnShader::kClearSigned: return kClearSigned;
-    case OwnShader::kCopy: break;
+    case OwnShader::kCopy: return kCopy;
+    case OwnShader::kCopyDepth: return kCopyDepth;
+    case OwnShader::kNothing: break;
   }
-  return kCopy;
+  return kNothing;
 }
 
 }  // namespace

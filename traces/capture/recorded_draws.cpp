@@ -129,8 +129,12 @@ traces::Pipeline FrameRecorder::pipeline_of(const BoundState& bound, const Raste
     else if (bit == VK_SHADER_STAGE_FRAGMENT_BIT) made.fragment_shader = stage_of(stage, false, 0);
     else throw user_error("VkShaderStageFlagBits {:#x} is not supported", bit);
   }
-  if (made.vertex_shader == traces::kNone || made.fragment_shader == traces::kNone)
-    throw user_error("a pipeline without a fragment shader is not supported");
+  if (made.vertex_shader == traces::kNone) throw user_error("a pipeline without a vertex shader");
+  // Depths are tested and written all the same; colours would not be defined. [VK1.3 #interfaces-fragmentoutput]
+  if (made.fragment_shader == traces::kNone) {
+    made.fragment_shader = tables_.own(OwnShader::kNothing);
+    for (traces::BlendState& blend : made.blend) blend.write_mask = 0;
+  }
   if (state.stippled) throw user_error("stippled lines are not supported");
   if (state.alpha_to_one) throw user_error("alpha to one is not supported");
   if (models::is_list(made.topology)) made.primitive_restart = false;
