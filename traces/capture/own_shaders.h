@@ -13,7 +13,8 @@ enum class OwnShader : std::uint8_t {
   kClearUnsigned,
   kClearSigned,  ///< of integers, whose bits `AreaConstants::color` holds
   kCopy,         ///< what a texture (set 0, binding 0) holds
-  kCopyDepth,    ///< the same of depths, as the fragment's depth
+  kCopyLine,     ///< the same of a texture of one dimension
+  kCopyDepth,    ///< what a texture of depths holds, as the fragment's depth
   kNothing       ///< of a pipeline that has no fragment shader: it writes nothing
 };
 /// SPIR-V 1.0, entry point "main". A clear's output has the location.

@@ -105,6 +105,8 @@ traces::TextureDescriptor StreamTables::texture(const ViewObject& view) {
   if (stored(view.image)) {
     made.image = attachment(view.image);
     made.layer = view.layer;
+    // A copy is drawn by sampling, which the program's image may not be for.
+    if (stream.images[made.image].samples == 1) stream.images[made.image].usage |= traces::kSampled;
     for (std::uint32_t level = 0; level < view.levels; ++level)
       for (std::uint32_t layer = 0; layer < made.layers; ++layer)
         note_needed({made.image, view.level + level, view.layer + layer});
@@ -167,7 +169,7 @@ Index StreamTables::own(OwnShader which, std::uint32_t location) {
 
 Index StreamTables::shader(Handle module, const ShaderWish& wish) {
   const auto key = std::tuple(module, wish.entry, wish.stage, wish.constants, wish.negative_one_to_one,
-                              wish.first_instance);
+                              wish.first_instance, wish.outputs);
   if (const auto found = shaders_.find(key); found != shaders_.end()) return found->second;
   traces::Shader made{fmt::format("shader {}", module), wish.stage,
                       shader_words(object(device_.modules, module, "shader module"), wish)};

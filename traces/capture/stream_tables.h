@@ -88,7 +88,7 @@ class StreamTables {
            traces::Index>
       textures_;
   std::map<std::tuple<Handle, std::string, traces::ShaderStage, std::map<std::uint32_t, std::uint32_t>, bool,
-                      std::uint32_t>,
+                      std::uint32_t, std::map<std::uint32_t, std::uint32_t>>,
            traces::Index>
       shaders_;
   std::vector<ShaderFacts> facts_;  ///< by shader
