@@ -97,8 +97,8 @@ void check_depths(const Image& image, std::size_t index) {
 }
 
 void check_kind(const Image& image, std::size_t index) {
-  if (image.kind != ImageKind::k2D && image.is_attachment())
-    throw user_error("image {} '{}': an attachment that is not 2D", index, image.name);
+  if (image.kind == ImageKind::k3D && image.is_attachment())
+    throw user_error("image {} '{}': an attachment that is a volume", index, image.name);
   const std::uint32_t most = image.kind == ImageKind::k3D ? kMaxDepth : 1;
   if (image.depth == 0 || image.depth > most)
     throw user_error("image {} '{}': depth {}; 1..{} are possible (1 unless it is a volume)", index,

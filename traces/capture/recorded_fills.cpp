@@ -131,6 +131,9 @@ void FrameRecorder::blit_region(Handle source, Handle target, const Value& regio
   const Value &from = region["srcSubresource"], &to = region["dstSubresource"];
   const ImageObject &source_image = object(device_.images, source, "image"),
                     &target_image = object(device_.images, target, "image");
+  const bool volumes = source_image.type == VK_IMAGE_TYPE_3D || !may_attach(target_image);
+  if (volumes && !tables_.stored(source) && !tables_.stored(target))
+    return device_.blit_image(source, target, region, filter);
   const Span x = span_of(region["srcOffsets"], "x"), y = span_of(region["srcOffsets"], "y");
   const Span to_x = span_of(region["dstOffsets"], "x"), to_y = span_of(region["dstOffsets"], "y");
   if (!(to_x.size > 0) || !(to_y.size > 0)) throw user_error("to an area with its corners turned");

@@ -30,6 +30,11 @@ Index place(std::vector<T>& table, const T& value) {
 
 }  // namespace
 
+bool may_attach(const ImageObject& image) {
+  const models::FormatInfo& info = models::format_info(image_format(image.format));
+  return image.type != VK_IMAGE_TYPE_3D && (info.may(models::kDepthUse) || info.may(models::kColorUse));
+}
+
 Index StreamTables::buffer(Handle handle) {
   if (device_.read_back.contains(handle)) throw user_error("buffer {} holds what a pass drew", handle);
   const BufferObject& object_of = object(device_.buffers, handle, "buffer");
@@ -56,8 +61,10 @@ Index StreamTables::attachment(Handle handle) {
   image.name = fmt::format("image {}", handle);
   image.format = image_format(from.format);
   const bool depth = models::format_info(image.format).may(models::kDepthUse);
-  if ((!depth && !models::format_info(image.format).may(models::kColorUse)) || from.type != VK_IMAGE_TYPE_2D)
-    throw user_error("an attachment of {} is not supported", format_name(from.format));
+  if (!may_attach(from))
+    throw user_error("an attachment of {}{} is not supported", format_name(from.format),
+                     from.type == VK_IMAGE_TYPE_3D ? ", a volume" : "");
+  image.kind = image_kind_of(from.type);
   image.width = from.width;
   image.height = from.height;
   image.levels = from.levels;

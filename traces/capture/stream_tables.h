@@ -18,6 +18,9 @@
 
 namespace quadrille::capture {
 
+/// May a pass draw to the image?
+[[nodiscard]] bool may_attach(const ImageObject& image);
+
 class StreamTables {
  public:
   explicit StreamTables(const Device& device) : device_(device) {}
