@@ -60,6 +60,9 @@ void check_samples(const Image& image, std::size_t index) {
   if (image.samples > 1 && (!image.is_attachment() || (image.usage & kSampled) != 0))
     throw user_error("image {} '{}': only an attachment that is not sampled has {} samples a pixel", index,
                      image.name, image.samples);
+  if (image.samples > 1 && image.kind != ImageKind::k2D)
+    throw user_error("image {} '{}': {} samples a pixel of an image that is not 2D", index, image.name,
+                     image.samples);
   if (image.samples > 1 && image.levels > 1)
     throw user_error("image {} '{}': {} levels of {} samples a pixel; it can have one", index, image.name,
                      image.levels, image.samples);
