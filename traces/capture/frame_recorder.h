@@ -86,6 +86,7 @@ class FrameRecorder {
   struct StoredPart {
     Handle image = 0;
     std::uint32_t level = 0, layer = 0;
+    friend bool operator==(const StoredPart&, const StoredPart&) = default;
   };
   /// An area of one image that is drawn to an area of another.
   struct DrawnCopy {

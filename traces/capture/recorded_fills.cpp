@@ -160,6 +160,7 @@ void FrameRecorder::draw_layers(DrawnCopy copy, std::uint32_t layers, const char
 void FrameRecorder::draw_copy(const DrawnCopy& copy, const char* label) {
   const ImageObject& image = object(device_.images, copy.source.image, "image");
   if (image.samples > 1) throw user_error("of several samples a pixel");
+  if (copy.source == copy.target) throw user_error("within a level of an image");
   const ViewObject view = view_of_part(copy.source.image, image, copy.source.level, copy.source.layer);
   const auto width = static_cast<float>(std::max(1u, image.width >> view.level));
   const auto height = static_cast<float>(std::max(1u, image.height >> view.level));

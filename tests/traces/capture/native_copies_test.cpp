@@ -132,6 +132,10 @@ TEST_CASE("capture: copies of depths that cannot be drawn are refused by name") 
              Catch::Contains("not supported: vkCmdCopyImage: of stencil values (x1)"));
   CHECK_THAT(copied(VK_FORMAT_D32_SFLOAT, depth_copy(kColors)),
              Catch::Contains("vkCmdCopyImage: to an image of depths (x1)"));
+  json within = depth_copy(kDepths);
+  within["srcImage"] = kImageB;
+  CHECK_THAT(copied(VK_FORMAT_D32_SFLOAT, within),
+             Catch::Contains("vkCmdCopyImage: within a level of an image (x1)"));
   json layers = depth_copy(kDepths);
   layers["pRegions"][0]["dstSubresource"] = subresource(kDepths, 2);
   CHECK_THAT(copied(VK_FORMAT_D32_SFLOAT, layers), Catch::Contains("vkCmdCopyImage: of 2 layers (x1)"));
