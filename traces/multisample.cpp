@@ -62,6 +62,7 @@ class SampleAdder {
     image.width = level_width(image, use.level);
     image.height = level_height(stream_.images[use.image], use.level);
     image.levels = image.layers = 1;
+    image.kind = ImageKind::k2D;
     image.usage = usage;
     image.texels.clear();
     image.samples = samples_;

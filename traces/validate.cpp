@@ -60,6 +60,9 @@ void check_samples(const Image& image, std::size_t index) {
   if (image.samples > 1 && !image.is_attachment())
     throw user_error("image {} '{}': only an attachment has {} samples a pixel", index, image.name,
                      image.samples);
+  if (image.samples > 1 && image.kind != ImageKind::k2D)
+    throw user_error("image {} '{}': {} samples a pixel of an image that is not 2D", index, image.name,
+                     image.samples);
   if (image.samples > 1 && image.levels > 1)
     throw user_error("image {} '{}': {} levels of {} samples a pixel; it can have one", index, image.name,
                      image.levels, image.samples);
@@ -97,8 +100,8 @@ void check_depths(const Image& image, std::size_t index) {
 }
 
 void check_kind(const Image& image, std::size_t index) {
-  if (image.kind != ImageKind::k2D && image.is_attachment())
-    throw user_error("image {} '{}': an attachment that is not 2D", index, image.name);
+  if (image.kind == ImageKind::k3D && image.is_attachment())
+    throw user_error("image {} '{}': an attachment that is a volume", index, image.name);
   const std::uint32_t most = image.kind == ImageKind::k3D ? kMaxDepth : 1;
   if (image.depth == 0 || image.depth > most)
     throw user_error("image {} '{}': depth {}; 1..{} are possible (1 unless it is a volume)", index,

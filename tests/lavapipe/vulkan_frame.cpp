@@ -117,6 +117,11 @@ void VulkanFrame::upload_images() {
   }
 }
 
+VulkanFrame::Seen VulkanFrame::attached(const traces::ImagePart& part) const {
+  const bool line = stream_.images[part.image].kind == traces::ImageKind::k1D;
+  return {part, 1, line ? traces::ViewKind::k1D : traces::ViewKind::k2D};
+}
+
 VkImageView VulkanFrame::view_of(const Seen& seen) {
   VkImageView& view = views_[seen];
   const auto& [finest, levels, kind, layers, components] = seen;
@@ -257,7 +262,7 @@ VkRenderingAttachmentInfo VulkanFrame::attach(const traces::AttachmentUse& use, 
   move(use.part(), layout);
   VkRenderingAttachmentInfo info{};
   info.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-  info.imageView = view_of({use.part()});
+  info.imageView = view_of(attached(use.part()));
   info.imageLayout = layout;
   info.loadOp = vk_load(use.load);
   info.storeOp =
@@ -281,7 +286,7 @@ void VulkanFrame::begin_pass(const traces::BeginPass& pass) {
     layouts_[use.resolve_part()] = VK_IMAGE_LAYOUT_UNDEFINED;
     move(use.resolve_part(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
     colors.back().resolveMode = integers ? VK_RESOLVE_MODE_SAMPLE_ZERO_BIT : VK_RESOLVE_MODE_AVERAGE_BIT;
-    colors.back().resolveImageView = view_of({use.resolve_part()});
+    colors.back().resolveImageView = view_of(attached(use.resolve_part()));
     colors.back().resolveImageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
   }
   VkRenderingAttachmentInfo depth{};

@@ -92,6 +92,8 @@ class VulkanFrame {
     friend auto operator<=>(const Seen&, const Seen&) = default;  // NOLINT(modernize-use-nullptr)
   };
   [[nodiscard]] VkImageView view_of(const Seen& seen);
+  /// What a pass draws to.
+  [[nodiscard]] Seen attached(const traces::ImagePart& part) const;
   void create_descriptor_sets();
 
   [[nodiscard]] SetShape shape_of(traces::Index set) const;

@@ -35,6 +35,8 @@ class Device {
   void fill_buffer(const Value& call);
   void copy_to_image(Handle source, Handle target, const Value& region);
   void copy_image(Handle source, Handle target, const Value& region);
+  /// Of colours that are no integers. `filter`: VkFilter.
+  void blit_image(Handle source, Handle target, const Value& region, std::uint32_t filter);
   /// A frame has left that in a level of a layer of an image, as its attachment's format stores it.
   void keep_drawn(Handle handle, std::uint32_t level, std::uint32_t layer, std::span<const std::byte> texels);
   void write_buffer(Handle handle, std::uint64_t offset, std::span<const std::byte> bytes);

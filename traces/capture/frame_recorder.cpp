@@ -148,7 +148,7 @@ traces::CommandStream FrameRecorder::take() {
   if (in_pass_) end_pass();
   // What is shown was drawn earlier: a last pass, without a draw, makes it the picture.
   if (presented_ != 0 && last_shown_ != presented_ && tables_.holds(presented_, 0, 0)) {
-    begin_blit(presented_, 0, 0);
+    begin_blit({presented_, 0, 0}, false);
     end_pass();
   }
   if (presented_ != 0 && last_shown_ != presented_)

@@ -47,6 +47,9 @@ struct BoundState {
 /// Makes the attachment begin with those bits: of integers, or of floats.
 void set_clear(traces::ColorAttachmentUse& use, const std::array<std::uint32_t, 4>& bits, bool integers);
 
+/// Of the two subresources of a copy: are they depths, and not colours? Throws `UserError` for anything else.
+[[nodiscard]] bool are_depths(const Value& from, const Value& to);
+
 /// How many dynamic offsets a set of that layout takes.
 [[nodiscard]] std::uint64_t dynamic_offsets(const SetLayoutObject& layout);
 
@@ -83,6 +86,7 @@ class FrameRecorder {
   struct StoredPart {
     Handle image = 0;
     std::uint32_t level = 0, layer = 0;
+    friend bool operator==(const StoredPart&, const StoredPart&) = default;
   };
   /// An area of one image that is drawn to an area of another.
   struct DrawnCopy {
@@ -90,6 +94,7 @@ class FrameRecorder {
     std::array<float, 4> from{};  ///< corner and size, in texels; a size below zero turns it
     Area to;
     traces::Filter filter = traces::Filter::kNearest;
+    bool depths = false;  ///< and not colours
   };
   /// What a triangle over an area writes to.
   struct Fill {
@@ -101,6 +106,18 @@ class FrameRecorder {
     bool indexed = false;
     std::uint32_t count = 0, first = 0;
     std::int32_t vertex_offset = 0;
+    std::uint32_t instances = 1, first_instance = 0;
+  };
+  struct BoundDescriptor {
+    Descriptor is;
+    std::uint32_t dynamic_offset = 0;  ///< bytes
+  };
+  /// Bytes of a memory.
+  struct MemoryRange {
+    Handle memory = 0;
+    std::uint64_t begin = 0, end = 0;
+    friend auto operator<=>(const MemoryRange&,
+                            const MemoryRange&) = default;  // NOLINT(modernize-use-nullptr)
   };
 
   void run(Handle command_buffer);
@@ -108,6 +125,7 @@ class FrameRecorder {
   bool bind(const Call& call, BoundState& bound);
   bool change_pass(const Call& call);
   bool draw(const Call& call, const BoundState& bound);
+  bool draw_indirect(const Call& call, const BoundState& bound);
   bool label(const Call& call);
 
   void bind_sets(const Value& call, BoundState& bound);
@@ -122,36 +140,46 @@ class FrameRecorder {
   void note_begin();
   void clear_attachments(const Value& call);
   void clear_at_begin(const Value& attachment);
+  [[nodiscard]] traces::Index color_place(const Value& attachment) const;
   void clear_area(const Value& attachment, const Area& area);
   void clear_color_area(std::uint32_t attachment, const std::array<std::uint32_t, 4>& bits, const Area& area);
   void clear_depth_area(std::uint32_t aspect, const std::array<std::uint32_t, 4>& bits, const Area& area);
   [[nodiscard]] static Area area_of(const Value& rect);
   void blit(const Value& call);
   void blit_region(Handle source, Handle target, const Value& region, std::uint32_t filter);
+  void draw_layers(DrawnCopy copy, std::uint32_t layers, const char* label);
   void draw_copy(const DrawnCopy& copy, const char* label);
   void draw_texture(const traces::TextureDescriptor& texture, const AreaConstants& constants,
-                    const StoredPart& target, const Area& to, const char* label);
+                    const DrawnCopy& copy, const char* label);
   void clear_image(const Value& call);
   bool copy(const Call& call);
+  bool copy_pixels(std::string_view name, const Value& info);
   void copy_images(const Value& call);
-  void begin_blit(Handle target, std::uint32_t level, std::uint32_t layer);
+  void copy_drawn(Handle source, Handle target, const Value& region);
+  void resolve(const Value& call);
+  void resolve_layer(const StoredPart& source, const StoredPart& target);
+  /// The attachment that the part lies in. Throws `UserError` for a part that there is not, or one of colours
+  /// where depths are wanted.
+  [[nodiscard]] traces::Index attachment_of(const StoredPart& part, bool depths);
+  void begin_blit(const StoredPart& target, bool depths);
   void fill(traces::Pipeline pipeline, const Fill& what, const AreaConstants& constants, const Area& area,
             const char* label);
   void attach(traces::AttachmentUse& use, const PassTarget& target);
 
-  void draw_one(const BoundState& bound, const DrawRange& range, const Value& call);
+  void draw_one(const BoundState& bound, const DrawRange& range);
+  /// Bytes that are arguments of draws. Throws `UserError` where they are not known.
+  [[nodiscard]] std::vector<std::uint32_t> arguments(Handle buffer, std::uint64_t offset,
+                                                     std::uint64_t bytes) const;
+  void note_written(const BoundDescriptor& bound);
   /// Gives the draw indices of its own where its provoking vertex is the last, and that can be seen.
   void turn_primitives(const BoundState& bound, traces::Pipeline& pipeline, traces::Draw& draw);
   [[nodiscard]] traces::Pipeline pipeline_of(const BoundState& bound, const RasterState& state,
                                              std::uint32_t first_instance);
   [[nodiscard]] traces::Index stage_of(const Value& stage, bool negative_one_to_one,
                                        std::uint32_t first_instance);
+  void place_colors(traces::Pipeline& pipeline, const RasterState& state) const;
   /// Gives attributes that have to be expanded a binding of their own.
   void expand_attributes(const BoundState& bound, const RasterState& state, traces::Pipeline& pipeline);
-  struct BoundDescriptor {
-    Descriptor is;
-    std::uint32_t dynamic_offset = 0;  ///< bytes
-  };
   /// Of a binding, that many elements. Those of an array that were never written, which the program may not
   /// use, are like the first that was; none, if none was.
   [[nodiscard]] std::vector<BoundDescriptor> bound_descriptors(const BoundState::Set& set,
@@ -186,6 +214,9 @@ class FrameRecorder {
   std::vector<std::string> labels_;
 
   traces::BeginPass pass_;
+  /// By location of a shader's output: the number of the pass's colour attachment, or `kNone` where the
+  /// program leaves that out. The stream's passes have no holes.
+  std::vector<traces::Index> color_places_;
   std::vector<StoredPart> pass_stores_;  ///< that this pass leaves contents in
   /// Attachments that this pass would load, and whose contents the capture does not bring.
   std::set<traces::Index> pass_lacks_;
@@ -195,6 +226,7 @@ class FrameRecorder {
   std::uint32_t pass_width_ = 0, pass_height_ = 0;
   Handle last_shown_ = 0;  ///< image of the latest pass's first colour
   Handle presented_ = 0;
+  std::set<MemoryRange> written_;  ///< storage buffers that draws of this frame may have written
 };
 
 }  // namespace quadrille::capture

@@ -128,6 +128,57 @@ constexpr std::uint32_t kCopy[] = {
     7,          0x13,       0xe,     0x12,    0x3003e, 9,       0x13,    0x100fd, 0x10038,
 };
 
+//     #version 450
+//     layout(set = 0, binding = 0) uniform sampler1D picture;
+//     layout(location = 0) in vec2 place;
+//     layout(location = 0) out vec4 color;
+//     void main() { color = texture(picture, place.x); }
+constexpr std::uint32_t kCopyLine[] = {
+    0x7230203, 0x10000,    0x8000b,    0x18,       0,       0x20011, 1,       0x20011, 0x2b,    0x6000b,
+    1,         0x4c534c47, 0x6474732e, 0x3035342e, 0,       0x3000e, 0,       1,       0x7000f, 4,
+    4,         0x6e69616d, 0,          9,          0x11,    0x30010, 4,       7,       0x40047, 9,
+    0x1e,      0,          0x40047,    0xd,        0x22,    0,       0x40047, 0xd,     0x21,    0,
+    0x40047,   0x11,       0x1e,       0,          0x20013, 2,       0x30021, 3,       2,       0x30016,
+    6,         0x20,       0x40017,    7,          6,       4,       0x40020, 8,       3,       7,
+    0x4003b,   8,          9,          3,          0x90019, 0xa,     6,       0,       0,       0,
+    0,         1,          0,          0x3001b,    0xb,     0xa,     0x40020, 0xc,     0,       0xb,
+    0x4003b,   0xc,        0xd,        0,          0x40017, 0xf,     6,       2,       0x40020, 0x10,
+    1,         0xf,        0x4003b,    0x10,       0x11,    1,       0x40015, 0x12,    0x20,    0,
+    0x4002b,   0x12,       0x13,       0,          0x40020, 0x14,    1,       6,       0x50036, 2,
+    4,         0,          3,          0x200f8,    5,       0x4003d, 0xb,     0xe,     0xd,     0x50041,
+    0x14,      0x15,       0x11,       0x13,       0x4003d, 6,       0x16,    0x15,    0x50057, 7,
+    0x17,      0xe,        0x16,       0x3003e,    9,       0x17,    0x100fd, 0x10038,
+};
+
+//     #version 450
+//     layout(set = 0, binding = 0) uniform sampler2D picture;
+//     layout(location = 0) in vec2 place;
+//     void main() { gl_FragDepth = texture(picture, place).r; }
+constexpr std::uint32_t kCopyDepth[] = {
+    0x7230203,  0x10000,    0x8000b, 0x17,    0,       0x20011, 1,       0x6000b, 1,       0x4c534c47,
+    0x6474732e, 0x3035342e, 0,       0x3000e, 0,       1,       0x7000f, 4,       4,       0x6e69616d,
+    0,          8,          0x10,    0x30010, 4,       7,       0x30010, 4,       0xc,     0x40047,
+    8,          0xb,        0x16,    0x40047, 0xc,     0x22,    0,       0x40047, 0xc,     0x21,
+    0,          0x40047,    0x10,    0x1e,    0,       0x20013, 2,       0x30021, 3,       2,
+    0x30016,    6,          0x20,    0x40020, 7,       3,       6,       0x4003b, 7,       8,
+    3,          0x90019,    9,       6,       1,       0,       0,       0,       1,       0,
+    0x3001b,    0xa,        9,       0x40020, 0xb,     0,       0xa,     0x4003b, 0xb,     0xc,
+    0,          0x40017,    0xe,     6,       2,       0x40020, 0xf,     1,       0xe,     0x4003b,
+    0xf,        0x10,       1,       0x40017, 0x12,    6,       4,       0x50036, 2,       4,
+    0,          3,          0x200f8, 5,       0x4003d, 0xa,     0xd,     0xc,     0x4003d, 0xe,
+    0x11,       0x10,       0x50057, 0x12,    0x13,    0xd,     0x11,    0x50051, 6,       0x16,
+    0x13,       0,          0x3003e, 8,       0x16,    0x100fd, 0x10038,
+};
+
+//     #version 450
+//     void main() {}
+constexpr std::uint32_t kNothing[] = {
+    0x7230203,  0x10000,    0x8000b, 6,       0,       0x20011, 1,       0x6000b, 1, 0x4c534c47,
+    0x6474732e, 0x3035342e, 0,       0x3000e, 0,       1,       0x5000f, 4,       4, 0x6e69616d,
+    0,          0x30010,    4,       7,       0x20013, 2,       0x30021, 3,       2, 0x50036,
+    2,          4,          0,       3,       0x200f8, 5,       0x100fd, 0x10038,
+};
+
 // clang-format on
 
 std::span<const std::uint32_t> words_of(OwnShader which) {
@@ -136,9 +187,12 @@ std::span<const std::uint32_t> words_of(OwnShader which) {
     case OwnShader::kClear: return kClear;
     case OwnShader::kClearUnsigned: return kClearUnsigned;
     case OwnShader::kClearSigned: return kClearSigned;
-    case OwnShader::kCopy: break;
+    case OwnShader::kCopy: return kCopy;
+    case OwnShader::kCopyLine: return kCopyLine;
+    case OwnShader::kCopyDepth: return kCopyDepth;
+    case OwnShader::kNothing: break;
   }
-  return kCopy;
+  return kNothing;
 }
 
 }  // namespace

@@ -12,7 +12,10 @@ enum class OwnShader : std::uint8_t {
   kClear,  ///< one colour, of floats
   kClearUnsigned,
   kClearSigned,  ///< of integers, whose bits `AreaConstants::color` holds
-  kCopy          ///< what a texture (set 0, binding 0) holds
+  kCopy,         ///< what a texture (set 0, binding 0) holds
+  kCopyLine,     ///< the same of a texture of one dimension
+  kCopyDepth,    ///< what a texture of depths holds, as the fragment's depth
+  kNothing       ///< of a pipeline that has no fragment shader: it writes nothing
 };
 /// SPIR-V 1.0, entry point "main". A clear's output has the location.
 [[nodiscard]] std::vector<std::uint32_t> own_shader(OwnShader which, std::uint32_t location = 0);

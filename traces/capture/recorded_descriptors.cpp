@@ -85,6 +85,8 @@ void FrameRecorder::emit_sets(const BoundState& bound, const traces::Pipeline& p
         throw user_error("binding {} (at most {} is supported)", binding, models::kMaxBinding);
       const std::vector<BoundDescriptor> elements = bound_descriptors(source->second, binding, count);
       if (elements.empty()) throw user_error("without binding {} of descriptor set {}", binding, set);
+      if (tables_.facts(shader).written.contains(place))
+        std::ranges::for_each(elements, [this](const auto& one) { note_written(one); });
       for (std::uint32_t k = 0; k < elements.size(); ++k)
         add_descriptor(made[set], models::element_binding(binding, k), elements[k]);
     }

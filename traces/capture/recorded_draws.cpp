@@ -28,45 +28,62 @@ std::map<std::uint32_t, std::uint32_t> constants_of(const Value& stage) {
   return constants;
 }
 
+/// Outputs whose locations are not the places of what they write to. Those without an attachment go behind
+/// the others, so that each place has one.
+std::map<std::uint32_t, std::uint32_t> moved_outputs(std::span<const traces::Index> places) {
+  std::map<std::uint32_t, std::uint32_t> moved;
+  auto behind =
+      static_cast<std::uint32_t>(std::ranges::count_if(places, [](auto p) { return p != traces::kNone; }));
+  for (std::uint32_t location = 0; location < places.size(); ++location) {
+    const std::uint32_t place = places[location] != traces::kNone ? places[location] : behind++;
+    if (place != location) moved[location] = place;
+  }
+  return moved;
+}
+
 }  // namespace
 
 bool FrameRecorder::draw(const Call& call, const BoundState& bound) {
   const Value& p = call.parameters;
+  const auto draw_range = [&](bool indexed, const Value& count, const Value& first, std::int32_t offset) {
+    draw_one(bound,
+             {indexed, count.u32(), first.u32(), offset, p["instanceCount"].u32(), p["firstInstance"].u32()});
+  };
   if (call.name == "CmdDraw") {
-    draw_one(bound, {false, p["vertexCount"].u32(), p["firstVertex"].u32(), 0}, p);
+    draw_range(false, p["vertexCount"], p["firstVertex"], 0);
   } else if (call.name == "CmdDrawIndexed") {
-    draw_one(bound, {true, p["indexCount"].u32(), p["firstIndex"].u32(), p["vertexOffset"].i32()}, p);
+    draw_range(true, p["indexCount"], p["firstIndex"], p["vertexOffset"].i32());
   } else if (call.name == "CmdDrawMultiEXT") {
     for (std::size_t i = 0; i < p["pVertexInfo"].size(); ++i) {
       const Value& one = p["pVertexInfo"].at(i);
-      draw_one(bound, {false, one["vertexCount"].u32(), one["firstVertex"].u32(), 0}, p);
+      draw_range(false, one["vertexCount"], one["firstVertex"], 0);
     }
   } else if (call.name == "CmdDrawMultiIndexedEXT") {
     for (std::size_t i = 0; i < p["pIndexInfo"].size(); ++i) {
       const Value& one = p["pIndexInfo"].at(i);
       const std::int32_t offset =
           p["pVertexOffset"].null() ? one["vertexOffset"].i32() : p["pVertexOffset"].i32();
-      draw_one(bound, {true, one["indexCount"].u32(), one["firstIndex"].u32(), offset}, p);
+      draw_range(true, one["indexCount"], one["firstIndex"], offset);
     }
   } else {
-    return false;
+    return draw_indirect(call, bound);
   }
   return true;
 }
 
-void FrameRecorder::draw_one(const BoundState& bound, const DrawRange& range, const Value& call) {
+void FrameRecorder::draw_one(const BoundState& bound, const DrawRange& range) {
   if (!in_pass_) throw user_error("outside a pass");
   if (bound.pipeline == nullptr) throw user_error("without a pipeline");
   const RasterState state = combined_state(*bound.pipeline->state, bound.fixed, bound.dynamic);
   if (state.discard) return;
-  traces::Pipeline pipeline = pipeline_of(bound, state, call["firstInstance"].u32());
+  traces::Pipeline pipeline = pipeline_of(bound, state, range.first_instance);
   traces::Draw made;
   made.indexed = range.indexed;
   made.count = range.count;
   made.first = range.first;
   made.vertex_offset = range.vertex_offset;
-  made.instances = call["instanceCount"].u32();
-  made.first_instance = call["firstInstance"].u32();
+  made.instances = range.instances;
+  made.first_instance = range.first_instance;
   for (const std::string& label : labels_) made.label += (made.label.empty() ? "" : "/") + label;
   if (state.last_vertex && tables_.facts(pipeline.fragment_shader).flat_input)
     turn_primitives(bound, pipeline, made);
@@ -111,6 +128,7 @@ traces::Index FrameRecorder::stage_of(const Value& stage, bool negative_one_to_o
   wish.stage = vertex ? traces::ShaderStage::kVertex : traces::ShaderStage::kFragment;
   wish.constants = constants_of(stage);
   wish.negative_one_to_one = vertex && negative_one_to_one;
+  if (!vertex) wish.outputs = moved_outputs(color_places_);
   const Handle module = stage["module"].u64();
   if (vertex && reads_first_instance(object(device_.modules, module, "shader module")))
     wish.first_instance = first_instance;
@@ -129,15 +147,16 @@ traces::Pipeline FrameRecorder::pipeline_of(const BoundState& bound, const Raste
     else if (bit == VK_SHADER_STAGE_FRAGMENT_BIT) made.fragment_shader = stage_of(stage, false, 0);
     else throw user_error("VkShaderStageFlagBits {:#x} is not supported", bit);
   }
-  if (made.vertex_shader == traces::kNone || made.fragment_shader == traces::kNone)
-    throw user_error("a pipeline without a fragment shader is not supported");
+  if (made.vertex_shader == traces::kNone) throw user_error("a pipeline without a vertex shader");
+  place_colors(made, state);
+  // Depths are tested and written all the same; colours are not defined. [VK1.3 #interfaces-fragmentoutput]
+  if (made.fragment_shader == traces::kNone) {
+    made.fragment_shader = tables_.own(OwnShader::kNothing);
+    for (traces::BlendState& blend : made.blend) blend.write_mask = 0;
+  }
   if (state.stippled) throw user_error("stippled lines are not supported");
   if (state.alpha_to_one) throw user_error("alpha to one is not supported");
   if (models::is_list(made.topology)) made.primitive_restart = false;
-  for (std::size_t i = 0; i < made.blend.size(); ++i) {
-    if (i >= pass_.colors.size()) made.blend[i] = {};
-    else if (!state.color_write[i]) made.blend[i].write_mask = 0;
-  }
   if (pass_.depth.image == traces::kNone) {
     made.depth = {};
     made.stencil = {};
@@ -149,6 +168,19 @@ traces::Pipeline FrameRecorder::pipeline_of(const BoundState& bound, const Raste
     if (binding != made.bindings.end() && source.stride) binding->stride = *source.stride;
   }
   return made;
+}
+
+/// Blending is by the location of an output; the stream has it by the place of the attachment.
+void FrameRecorder::place_colors(traces::Pipeline& pipeline, const RasterState& state) const {
+  if (pipeline.alpha_to_coverage && !color_places_.empty() && color_places_[0] == traces::kNone)
+    throw user_error("alpha to coverage without colour attachment 0 is not supported");
+  pipeline.blend = {};
+  for (std::size_t location = 0; location < color_places_.size(); ++location) {
+    if (color_places_[location] == traces::kNone) continue;
+    traces::BlendState& blend = pipeline.blend.at(color_places_[location]);
+    blend = state.pipeline.blend.at(location);
+    if (!state.color_write.at(location)) blend.write_mask = 0;
+  }
 }
 
 /// Vulkan lets a scissor reach beyond the target; what is beyond has no pixels.

@@ -25,7 +25,7 @@ ViewObject view_of_part(Handle handle, const ImageObject& image, std::uint32_t l
                      image.layers);
   ViewObject view;
   view.image = handle;
-  view.type = VK_IMAGE_VIEW_TYPE_2D;
+  view.type = image.type == VK_IMAGE_TYPE_1D ? VK_IMAGE_VIEW_TYPE_1D : VK_IMAGE_VIEW_TYPE_2D;
   view.format = image.format;
   view.aspect = VK_IMAGE_ASPECT_COLOR_BIT;
   view.level = level;
@@ -79,9 +79,9 @@ void FrameRecorder::clear_area(const Value& attachment, const Area& area) {
   const std::uint32_t aspect = attachment["aspectMask"].u32(), number = attachment["colorAttachment"].u32();
   const std::array<std::uint32_t, 4> bits = clear_bits(attachment["clearValue"]);
   if ((aspect & VK_IMAGE_ASPECT_COLOR_BIT) != 0) {
-    if (number >= pass_.colors.size())
-      throw user_error("of colour attachment {} of a pass that has {}", number, pass_.colors.size());
-    clear_color_area(number, bits, area);
+    if (number >= color_places_.size())
+      throw user_error("of colour attachment {} of a pass that has {}", number, color_places_.size());
+    if (color_places_[number] != traces::kNone) clear_color_area(color_places_[number], bits, area);
   }
   if ((aspect & (VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT)) != 0)
     clear_depth_area(aspect, bits, area);
@@ -129,25 +129,38 @@ void FrameRecorder::blit(const Value& call) {
 
 void FrameRecorder::blit_region(Handle source, Handle target, const Value& region, std::uint32_t filter) {
   const Value &from = region["srcSubresource"], &to = region["dstSubresource"];
-  if (from["aspectMask"].u32() != VK_IMAGE_ASPECT_COLOR_BIT) throw user_error("of depths");
-  const std::uint32_t layers = to["layerCount"].u32();
-  if (layers > object(device_.images, target, "image").layers) throw user_error("of {} layers", layers);
+  const ImageObject &source_image = object(device_.images, source, "image"),
+                    &target_image = object(device_.images, target, "image");
+  const bool volumes = source_image.type == VK_IMAGE_TYPE_3D || !may_attach(target_image);
+  if (volumes && !tables_.stored(source) && !tables_.stored(target))
+    return device_.blit_image(source, target, region, filter);
   const Span x = span_of(region["srcOffsets"], "x"), y = span_of(region["srcOffsets"], "y");
   const Span to_x = span_of(region["dstOffsets"], "x"), to_y = span_of(region["dstOffsets"], "y");
   if (!(to_x.size > 0) || !(to_y.size > 0)) throw user_error("to an area with its corners turned");
   DrawnCopy copy;
+  copy.depths = are_depths(from, to);
+  if (copy.depths && source_image.format != target_image.format)
+    throw user_error("between formats of depths");
   copy.source = {source, from["mipLevel"].u32(), from["baseArrayLayer"].u32()};
   copy.target = {target, to["mipLevel"].u32(), to["baseArrayLayer"].u32()};
   copy.from = {x.begin, y.begin, x.size, y.size};
   copy.to = {static_cast<std::int32_t>(to_x.begin), static_cast<std::int32_t>(to_y.begin),
              static_cast<std::uint32_t>(to_x.size), static_cast<std::uint32_t>(to_y.size)};
   copy.filter = filter == VK_FILTER_LINEAR ? traces::Filter::kLinear : traces::Filter::kNearest;
+  draw_layers(copy, to["layerCount"].u32(), "blit");
+}
+
+void FrameRecorder::draw_layers(DrawnCopy copy, std::uint32_t layers, const char* label) {
+  if (layers > object(device_.images, copy.target.image, "image").layers)
+    throw user_error("of {} layers", layers);
   for (std::uint32_t layer = 0; layer < layers; ++layer, ++copy.source.layer, ++copy.target.layer)
-    draw_copy(copy, "blit");
+    draw_copy(copy, label);
 }
 
 void FrameRecorder::draw_copy(const DrawnCopy& copy, const char* label) {
   const ImageObject& image = object(device_.images, copy.source.image, "image");
+  if (image.samples > 1) throw user_error("of several samples a pixel");
+  if (copy.source == copy.target) throw user_error("within a level of an image");
   const ViewObject view = view_of_part(copy.source.image, image, copy.source.level, copy.source.layer);
   const auto width = static_cast<float>(std::max(1u, image.width >> view.level));
   const auto height = static_cast<float>(std::max(1u, image.height >> view.level));
@@ -156,20 +169,30 @@ void FrameRecorder::draw_copy(const DrawnCopy& copy, const char* label) {
                       copy.from[3] / height};
   traces::TextureDescriptor texture = tables_.texture(view);
   texture.sampler = tables_.sampler(copying_sampler(copy.filter));
-  draw_texture(texture, constants, copy.target, copy.to, label);
+  draw_texture(texture, constants, copy, label);
 }
 
-/// A pass with one draw. What it covers whole is not loaded.
+/// A pass with one draw. What it covers whole is not loaded, but for stencil values beside depths.
 void FrameRecorder::draw_texture(const traces::TextureDescriptor& texture, const AreaConstants& constants,
-                                 const StoredPart& target, const Area& to, const char* label) {
-  begin_blit(target.image, target.level, target.layer);
-  if (to.x == 0 && to.y == 0 && to.width == pass_width_ && to.height == pass_height_)
-    std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]).colors[0].load =
-        traces::LoadOp::kDontCare;
+                                 const DrawnCopy& copy, const char* label) {
+  begin_blit(copy.target, copy.depths);
+  auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
+  traces::AttachmentUse& use =
+      copy.depths ? static_cast<traces::AttachmentUse&>(begin.depth) : begin.colors[0];
+  const bool whole =
+      copy.to.x == 0 && copy.to.y == 0 && copy.to.width == pass_width_ && copy.to.height == pass_height_;
+  if (whole && !models::has_stencil(tables_.stream.images[use.image].format))
+    use.load = traces::LoadOp::kDontCare;
   traces::DescriptorSet set;
   set.textures.push_back(texture);
   emit_change(0, traces::BindDescriptorSet{0, tables_.descriptors(set)});
-  fill({}, {OwnShader::kCopy}, constants, to, label);
+  traces::Pipeline pipeline;
+  Fill what{texture.view == traces::ViewKind::k1D ? OwnShader::kCopyLine : OwnShader::kCopy};
+  if (copy.depths) {
+    pipeline.depth = {true, true, traces::CompareOp::kAlways};
+    what = {OwnShader::kCopyDepth, 0, false};
+  }
+  fill(pipeline, what, constants, copy.to, label);
   end_pass();
 }
 
@@ -190,7 +213,7 @@ void FrameRecorder::clear_image(const Value& call) {
     for (std::uint32_t l = first_level; l < end(first_level, range["levelCount"].u32(), image.levels); ++l)
       for (std::uint32_t a = first_layer; a < end(first_layer, range["layerCount"].u32(), image.layers);
            ++a) {
-        begin_blit(target, l, a);
+        begin_blit({target, l, a}, false);
         auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
         set_clear(begin.colors[0], bits,
                   traces::is_integer_format(tables_.stream.images[begin.colors[0].image].format));
@@ -199,24 +222,34 @@ void FrameRecorder::clear_image(const Value& call) {
   }
 }
 
-void FrameRecorder::begin_blit(Handle target, std::uint32_t level, std::uint32_t layer) {
+traces::Index FrameRecorder::attachment_of(const StoredPart& part, bool depths) {
+  const traces::Index index = tables_.attachment(part.image);
+  const traces::Image& image = tables_.stream.images[index];
+  const bool has_depths = (image.usage & traces::kDepthAttachment) != 0;
+  if (has_depths != depths) throw user_error("to an image of {}", has_depths ? "depths" : "colours");
+  if (part.level >= image.levels || part.layer >= image.layers)
+    throw user_error("level {} of layer {} of an image that has {} and {}", part.level, part.layer,
+                     image.levels, image.layers);
+  return index;
+}
+
+void FrameRecorder::begin_blit(const StoredPart& target, bool depths) {
+  const traces::Index index = attachment_of(target, depths);
+  const traces::Image& image = tables_.stream.images[index];
   pass_ = {};
   pass_stores_.clear();
   pass_lacks_.clear();
-  traces::ColorAttachmentUse& use = pass_.colors.emplace_back();
-  use.image = tables_.attachment(target);
-  const traces::Image& image = tables_.stream.images[use.image];
-  if ((image.usage & traces::kColorAttachment) == 0) throw user_error("to an image of depths");
-  if (level >= image.levels || layer >= image.layers)
-    throw user_error("level {} of layer {} of an image that has {} and {}", level, layer, image.levels,
-                     image.layers);
-  use.level = level;
-  use.layer = layer;
-  use.load = tables_.holds(target, level, layer) ? traces::LoadOp::kLoad : traces::LoadOp::kDontCare;
-  pass_stores_.push_back({target, level, layer});
-  pass_width_ = traces::level_width(image, level);
-  pass_height_ = traces::level_height(image, level);
-  last_shown_ = target;
+  traces::AttachmentUse& use =
+      depths ? static_cast<traces::AttachmentUse&>(pass_.depth) : pass_.colors.emplace_back();
+  use.image = index;
+  use.level = target.level;
+  use.layer = target.layer;
+  const traces::LoadOp unknown = depths ? traces::LoadOp::kClear : traces::LoadOp::kDontCare;
+  use.load = tables_.holds(target.image, target.level, target.layer) ? traces::LoadOp::kLoad : unknown;
+  pass_stores_.push_back(target);
+  pass_width_ = traces::level_width(image, target.level);
+  pass_height_ = traces::level_height(image, target.level);
+  last_shown_ = depths ? 0 : target.image;
   in_pass_ = true;
   begin_at_ = tables_.stream.commands.size();
   tables_.stream.commands.emplace_back(pass_);

@@ -40,7 +40,6 @@ bool FrameRecorder::change_pass(const Call& call) {
            call.name == "CmdEndRenderPass2")
     end_pass();
   else if (call.name == "CmdClearAttachments") clear_attachments(p);
-  else if (call.name == "CmdBlitImage") blit(p);
   else if (call.name == "CmdClearColorImage") clear_image(p);
   else return false;
   return true;
@@ -115,9 +114,10 @@ void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target)
 /// Outside of a part that it renders to, the pass leaves its attachments as they are: it loads them, and
 /// clears the part by draws. [VK1.3 #renderpass-load-ops]
 void FrameRecorder::begin_pass_in(std::vector<PassTarget> colors, PassTarget depth, const Value& area) {
-  const PassTarget& first = colors.empty() ? depth : colors[0];
-  if (first.view == 0) return begin_pass(colors, depth);
-  const ViewObject& view = object(device_.views, first.view, "image view");
+  const auto found = std::ranges::find_if(colors, [](const PassTarget& color) { return color.view != 0; });
+  const Handle first = found != colors.end() ? found->view : depth.view;
+  if (first == 0) return begin_pass(colors, depth);
+  const ViewObject& view = object(device_.views, first, "image view");
   const ImageObject& image = object(device_.images, view.image, "image");
   if (covers(area, std::max(1u, image.width >> view.level), std::max(1u, image.height >> view.level)))
     return begin_pass(colors, depth);
@@ -131,11 +131,11 @@ void FrameRecorder::begin_pass_in(std::vector<PassTarget> colors, PassTarget dep
   };
   std::vector<std::uint32_t> cleared;
   for (std::uint32_t i = 0; i < colors.size(); ++i)
-    if (whole(colors[i])) cleared.push_back(i);
+    if (colors[i].view != 0 && whole(colors[i])) cleared.push_back(i);
   const bool clears_depth = whole(depth);
   begin_pass(colors, depth);
   const Area part = area_of(area);
-  for (const std::uint32_t i : cleared) clear_color_area(i, colors[i].clear, part);
+  for (const std::uint32_t i : cleared) clear_color_area(color_places_[i], colors[i].clear, part);
   if (clears_depth)
     clear_depth_area(VK_IMAGE_ASPECT_DEPTH_BIT | VK_IMAGE_ASPECT_STENCIL_BIT, depth.clear, part);
 }
@@ -151,9 +151,13 @@ void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const Pass
   pass_stores_.clear();
   pass_lacks_.clear();
   last_shown_ = 0;
+  color_places_.clear();
+  if (colors.size() > traces::kMaxColorAttachments)
+    throw user_error("of {} colour attachments", colors.size());
   for (const PassTarget& color : colors) {
-    if (color.view == 0)
-      throw user_error("a pass with a colour attachment that is left out is not supported");
+    const auto place = static_cast<traces::Index>(pass_.colors.size());
+    color_places_.push_back(color.view != 0 ? place : traces::kNone);
+    if (color.view == 0) continue;
     traces::ColorAttachmentUse& use = pass_.colors.emplace_back();
     attach(use, color);
     const traces::Format format = tables_.stream.images[use.image].format;
@@ -179,6 +183,7 @@ void FrameRecorder::begin_pass(const std::vector<PassTarget>& colors, const Pass
       pass_.depth.clear_stencil = 0;
     }
   }
+  if (pass_.first_image() == traces::kNone) throw user_error("a pass without attachments is not supported");
   in_pass_ = true;
   drew_ = false;
   begin_at_ = tables_.stream.commands.size();
@@ -223,11 +228,18 @@ void FrameRecorder::clear_attachments(const Value& call) {
   }
 }
 
+/// Of the attachment that a clear names; `kNone` where there is nothing to clear.
+traces::Index FrameRecorder::color_place(const Value& attachment) const {
+  const std::uint32_t number = attachment["colorAttachment"].u32();
+  return number < color_places_.size() ? color_places_[number] : traces::kNone;
+}
+
 void FrameRecorder::clear_at_begin(const Value& attachment) {
   auto& begin = std::get<traces::BeginPass>(tables_.stream.commands[begin_at_]);
-  const std::uint32_t aspect = attachment["aspectMask"].u32(), number = attachment["colorAttachment"].u32();
+  const std::uint32_t aspect = attachment["aspectMask"].u32();
+  const std::uint32_t number = color_place(attachment);
   const std::array<std::uint32_t, 4> bits = clear_bits(attachment["clearValue"]);
-  if ((aspect & VK_IMAGE_ASPECT_COLOR_BIT) != 0 && number < begin.colors.size()) {
+  if ((aspect & VK_IMAGE_ASPECT_COLOR_BIT) != 0 && number != traces::kNone) {
     const traces::Format format = tables_.stream.images[begin.colors[number].image].format;
     set_clear(begin.colors[number], bits, traces::is_integer_format(format));
     pass_lacks_.erase(begin.colors[number].image);

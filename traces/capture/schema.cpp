@@ -12,13 +12,16 @@ namespace {
 class Schema {
  public:
   Schema() {
-    for (const SchemaRow& row : structure_rows()) structures_[row.name] = {row.name, row.type, {}};
-    for (const SchemaRow& row : structure_rows()) fill(structures_[row.name], row.fields);
-    for (const SchemaRow& row : call_rows()) {
-      Structure& call = calls_[row.name];
-      call.name = row.name;
-      fill(call, row.fields);
-    }
+    for (const auto rows : {structure_rows(), copy_structure_rows()})
+      for (const SchemaRow& row : rows) structures_[row.name] = {row.name, row.type, {}};
+    for (const auto rows : {structure_rows(), copy_structure_rows()})
+      for (const SchemaRow& row : rows) fill(structures_[row.name], row.fields);
+    for (const auto rows : {call_rows(), copy_call_rows()})
+      for (const SchemaRow& row : rows) {
+        Structure& call = calls_[row.name];
+        call.name = row.name;
+        fill(call, row.fields);
+      }
     for (const auto& [name, structure] : structures_)
       if (structure.type != 0) types_[structure.type] = &structure;
   }

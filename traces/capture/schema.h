@@ -1,9 +1,9 @@
 /// What a call's parameters and a structure's members are, as Vulkan's registry declares them: what is needed
 /// to read the bytes of a call. [VK registry] [GFXR #parameters]
 ///
-/// The tables (schema_calls.cpp, schema_structs.cpp) are text: "name:type", a star for what is pointed to or
-/// stands in an array. They hold the calls that this program acts upon, and every structure that these can
-/// reach.
+/// The tables (schema_calls.cpp, schema_copies.cpp, schema_structs.cpp) are text: "name:type", a star for
+/// what is pointed to or stands in an array. They hold the calls that this program acts upon, and every
+/// structure that these can reach.
 #pragma once
 
 #include <cstdint>
@@ -53,6 +53,9 @@ struct SchemaRow {
 };
 [[nodiscard]] std::span<const SchemaRow> call_rows();
 [[nodiscard]] std::span<const SchemaRow> structure_rows();
+/// Those of copies.
+[[nodiscard]] std::span<const SchemaRow> copy_call_rows();
+[[nodiscard]] std::span<const SchemaRow> copy_structure_rows();
 
 /// The name of a call by its number in the file, without "vk"; empty if it is not known. [GFXR #call-ids]
 [[nodiscard]] std::string_view call_name(std::uint32_t id);

@@ -113,6 +113,12 @@ constexpr SchemaRow kCalls[] = {
      "firstInstance:u32"},
     {"CmdDrawIndirect", "commandBuffer:u64 buffer:u64 offset:u64 drawCount:u32 stride:u32"},
     {"CmdDrawIndexedIndirect", "commandBuffer:u64 buffer:u64 offset:u64 drawCount:u32 stride:u32"},
+    {"CmdDrawIndirectCount",
+     "commandBuffer:u64 buffer:u64 offset:u64 countBuffer:u64 countBufferOffset:u64 maxDrawCount:u32 "
+     "stride:u32"},
+    {"CmdDrawIndexedIndirectCount",
+     "commandBuffer:u64 buffer:u64 offset:u64 countBuffer:u64 countBufferOffset:u64 maxDrawCount:u32 "
+     "stride:u32"},
     {"CmdDrawMultiEXT",
      "commandBuffer:u64 drawCount:u32 pVertexInfo:*MultiDrawInfoEXT instanceCount:u32 "
      "firstInstance:u32 stride:u32"},
@@ -128,19 +134,6 @@ constexpr SchemaRow kCalls[] = {
     {"CmdClearDepthStencilImage",
      "commandBuffer:u64 image:u64 imageLayout:u32 "
      "pDepthStencil:*ClearDepthStencilValue rangeCount:u32 pRanges:*ImageSubresourceRange"},
-    {"CmdCopyBuffer", "commandBuffer:u64 srcBuffer:u64 dstBuffer:u64 regionCount:u32 pRegions:*BufferCopy"},
-    {"CmdCopyImage",
-     "commandBuffer:u64 srcImage:u64 srcImageLayout:u32 dstImage:u64 dstImageLayout:u32 "
-     "regionCount:u32 pRegions:*ImageCopy"},
-    {"CmdCopyBufferToImage",
-     "commandBuffer:u64 srcBuffer:u64 dstImage:u64 dstImageLayout:u32 "
-     "regionCount:u32 pRegions:*BufferImageCopy"},
-    {"CmdCopyImageToBuffer",
-     "commandBuffer:u64 srcImage:u64 srcImageLayout:u32 dstBuffer:u64 "
-     "regionCount:u32 pRegions:*BufferImageCopy"},
-    {"CmdBlitImage",
-     "commandBuffer:u64 srcImage:u64 srcImageLayout:u32 dstImage:u64 dstImageLayout:u32 "
-     "regionCount:u32 pRegions:*ImageBlit filter:u32"},
     {"CmdUpdateBuffer", "commandBuffer:u64 dstBuffer:u64 dstOffset:u64 dataSize:u64 pData:*u8"},
     {"CmdFillBuffer", "commandBuffer:u64 dstBuffer:u64 dstOffset:u64 size:u64 data:u32"},
     {"CmdSetViewport", "commandBuffer:u64 firstViewport:u32 viewportCount:u32 pViewports:*Viewport"},

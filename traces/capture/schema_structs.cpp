@@ -31,14 +31,10 @@ constexpr SchemaRow kStructures[] = {
      VK_STRUCTURE_TYPE_BIND_BUFFER_MEMORY_INFO},
     {"BindImageMemoryInfo", "sType:u32 pNext:next image:u64 memory:u64 memoryOffset:u64",
      VK_STRUCTURE_TYPE_BIND_IMAGE_MEMORY_INFO},
-    {"BufferCopy", "srcOffset:u64 dstOffset:u64 size:u64"},
     {"BufferCreateInfo",
      "sType:u32 pNext:next flags:u32 size:u64 usage:u32 sharingMode:u32 "
      "queueFamilyIndexCount:u32 pQueueFamilyIndices:*u32",
      VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO},
-    {"BufferImageCopy",
-     "bufferOffset:u64 bufferRowLength:u32 bufferImageHeight:u32 "
-     "imageSubresource:ImageSubresourceLayers imageOffset:Offset3D imageExtent:Extent3D"},
     {"BufferOpaqueCaptureAddressCreateInfo", "sType:u32 pNext:next opaqueCaptureAddress:u64",
      VK_STRUCTURE_TYPE_BUFFER_OPAQUE_CAPTURE_ADDRESS_CREATE_INFO},
     {"BufferViewCreateInfo", "sType:u32 pNext:next flags:u32 buffer:u64 format:u32 offset:u64 range:u64",
@@ -126,12 +122,6 @@ constexpr SchemaRow kStructures[] = {
      "pColorBlendState:*PipelineColorBlendStateCreateInfo pDynamicState:*PipelineDynamicStateCreateInfo "
      "layout:u64 renderPass:u64 subpass:u32 basePipelineHandle:u64 basePipelineIndex:i32",
      VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO},
-    {"ImageBlit",
-     "srcSubresource:ImageSubresourceLayers srcOffsets:*Offset3D "
-     "dstSubresource:ImageSubresourceLayers dstOffsets:*Offset3D"},
-    {"ImageCopy",
-     "srcSubresource:ImageSubresourceLayers srcOffset:Offset3D "
-     "dstSubresource:ImageSubresourceLayers dstOffset:Offset3D extent:Extent3D"},
     {"ImageCreateInfo",
      "sType:u32 pNext:next flags:u32 imageType:u32 format:u32 extent:Extent3D "
      "mipLevels:u32 arrayLayers:u32 samples:u32 tiling:u32 usage:u32 sharingMode:u32 "

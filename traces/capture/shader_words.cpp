@@ -4,55 +4,19 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <set>
 
 #include "models/base/error.h"
+#include "traces/capture/spirv_parts.h"
 
 namespace quadrille::capture {
 namespace {
 
 using Words = std::vector<std::uint32_t>;
-using Instruction = std::span<const std::uint32_t>;
 
-constexpr std::size_t kHeader = 5, kBound = 3;
 constexpr std::uint32_t kMaxBound = 1u << 22;  // [SPIRV §2.17: 0x3FFFFF]
-// Numbers of instructions and decorations. [SPIRV §3]
-enum Op : std::uint32_t {
-  kName = 5,
-  kEntryPoint = 15,
-  kExecutionMode = 16,
-  kTypeInt = 21,
-  kTypeFloat = 22,
-  kTypeVector = 23,
-  kTypeArray = 28,
-  kTypePointer = 32,
-  kConstant = 43,
-  kSpecTrue = 48,
-  kSpecFalse = 49,
-  kSpecConstant = 50,
-  kFunction = 54,
-  kFunctionEnd = 56,
-  kFunctionCall = 57,
-  kVariable = 59,
-  kLoad = 61,
-  kStore = 62,
-  kAccessChain = 65,
-  kDecorate = 71,
-  kMemberDecorate = 72,
-  kCompositeExtract = 81,
-  kCompositeInsert = 82,
-  kCopyObject = 83,
-  kFAdd = 129,
-  kFMul = 133,
-  kCapability = 17,
-  kDemote = 5380,
-  kLabel = 248,
-  kReturn = 253
-};
-constexpr std::uint32_t kSpecId = 1, kBuiltIn = 11, kFlat = 14, kBinding = 33, kDescriptorSet = 34,
-                        kPosition = 0, kOutput = 3, kDemoteCapability = 5379, kBaseInstance = 4425,
+constexpr std::uint32_t kPosition = 0, kOutput = 3, kDemoteCapability = 5379, kBaseInstance = 4425,
                         kHalf = 0x3f000000;
-
-std::uint32_t op_of(Instruction i) { return i[0] & 0xffff; }
 
 /// The words of a string from `first` on.
 std::string text_of(Instruction i, std::size_t first) {
@@ -82,24 +46,11 @@ struct Facts {
   std::uint32_t block = 0;  ///< the structure that has it as a member
   std::uint32_t float_type = 0, vector_type = 0, pointer_type = 0, int_type = 0;
   std::uint32_t first_instance = 0, first_instance_type = 0;  ///< the variable, and what is loaded of it
+  std::set<std::uint32_t> outputs;                            ///< variables
 };
 
 bool is_first_instance(Instruction i) {
   return op_of(i) == kDecorate && i.size() == 4 && i[2] == kBuiltIn && i[3] == kBaseInstance;
-}
-
-std::vector<Instruction> split(std::span<const std::uint32_t> words) {
-  if (words.size() < kHeader || words[kBound] >= kMaxBound)
-    throw user_error("a shader module has no SPIR-V header");
-  std::vector<Instruction> instructions;
-  for (std::size_t at = kHeader; at < words.size();) {
-    const std::size_t count = words[at] >> 16;
-    if (count == 0 || count > words.size() - at)
-      throw user_error("a shader module ends within an instruction");
-    instructions.push_back(words.subspan(at, count));
-    at += count;
-  }
-  return instructions;
 }
 
 class Module {
@@ -110,8 +61,8 @@ class Module {
   }
 
   Words rewritten() {
-    Words out(words_.begin(), words_.begin() + kHeader);
-    bound_ = words_[kBound];
+    Words out(words_.begin(), words_.begin() + kSpirvHeader);
+    bound_ = words_[kSpirvBound];
     if (demotes_ && !may_demote_) allow_demotion(out);
     const bool moves = wish_.negative_one_to_one && facts_.position != 0;
     const std::uint32_t main = moves ? bound_++ : facts_.entry;
@@ -125,7 +76,7 @@ class Module {
       copy(out, i, main);
     }
     if (moves) add_main(out, main);
-    out[kBound] = bound_;
+    out[kSpirvBound] = bound_;
     return out;
   }
 
@@ -162,6 +113,8 @@ class Module {
     }
     if (op == kDecorate && i.size() == 4 && i[2] == kSpecId) facts_.spec_numbers[i[1]] = i[3];
     if (op == kDecorate && i.size() == 4 && i[2] == kBuiltIn && i[3] == kPosition) facts_.position = i[1];
+    if (op == kVariable && i.size() >= 4 && i[3] == kOutput) gather_output(i);
+    if (op == kTypeArray && i.size() == 4) arrays_.insert(i[1]);
     demotes_ = demotes_ || op == kDemote;
     if (op == kCapability && i.size() == 2 && i[1] == kDemoteCapability) may_demote_ = true;
     if (is_first_instance(i)) facts_.first_instance = i[1];
@@ -176,7 +129,13 @@ class Module {
     if (op == kTypePointer && i.size() == 4 && i[2] == kOutput) {
       if (i[3] == facts_.vector_type) facts_.pointer_type = i[1];
       if (facts_.block != 0 && i[3] == facts_.block) block_pointer_ = i[1];
+      if (arrays_.contains(i[3])) arrays_.insert(i[1]);
     }
+  }
+  void gather_output(Instruction i) {
+    facts_.outputs.insert(i[2]);
+    if (!wish_.outputs.empty() && arrays_.contains(i[1]))
+      throw user_error("an array of outputs where a pass leaves out colour attachments is not supported");
   }
   void find_position(Instruction i) {
     if (block_pointer_ != 0 && op_of(i) == kVariable && i.size() >= 4 && i[1] == block_pointer_)
@@ -194,11 +153,19 @@ class Module {
       }
     } else if (op == kSpecTrue || op == kSpecFalse || op == kSpecConstant) {
       copy_constant(out, i);
+    } else if (moved_output(i) != nullptr) {
+      append(out, kDecorate, {i[1], kLocation, *moved_output(i)});
     } else if (is_load_of_first_instance(i)) {
       append(out, kCopyObject, {i[1], i[2], first_instance_});
     } else if (!is_about_first_instance(i)) {
       out.insert(out.end(), i.begin(), i.end());
     }
+  }
+  /// Of a decoration with the location of an output: where that goes; null if it stays.
+  [[nodiscard]] const std::uint32_t* moved_output(Instruction i) const {
+    if (wish_.outputs.empty() || op_of(i) != kDecorate || i.size() != 4 || i[2] != kLocation) return nullptr;
+    const auto place = wish_.outputs.find(i[3]);
+    return place == wish_.outputs.end() || !facts_.outputs.contains(i[1]) ? nullptr : &place->second;
   }
   void copy_entry(Words& out, Instruction i, std::uint32_t main) {
     const Instruction all = i.subspan(3 + text_words(wish_.entry));
@@ -277,11 +244,26 @@ class Module {
   const ShaderWish& wish_;
   std::vector<Instruction> instructions_;
   Facts facts_;
+  std::set<std::uint32_t> arrays_;  ///< types, and pointers to outputs of them
   bool demotes_ = false, may_demote_ = false;
   std::uint32_t block_pointer_ = 0, bound_ = 0, half_ = 0, member_ = 0, first_instance_ = 0;
 };
 
 }  // namespace
+
+std::vector<Instruction> split(std::span<const std::uint32_t> words) {
+  if (words.size() < kSpirvHeader || words[kSpirvBound] >= kMaxBound)
+    throw user_error("a shader module has no SPIR-V header");
+  std::vector<Instruction> instructions;
+  for (std::size_t at = kSpirvHeader; at < words.size();) {
+    const std::size_t count = words[at] >> 16;
+    if (count == 0 || count > words.size() - at)
+      throw user_error("a shader module ends within an instruction");
+    instructions.push_back(words.subspan(at, count));
+    at += count;
+  }
+  return instructions;
+}
 
 bool reads_first_instance(std::span<const std::uint32_t> module) {
   return std::ranges::any_of(split(module), is_first_instance);
@@ -289,28 +271,6 @@ bool reads_first_instance(std::span<const std::uint32_t> module) {
 
 std::vector<std::uint32_t> shader_words(std::span<const std::uint32_t> module, const ShaderWish& wish) {
   return Module(module, wish).rewritten();
-}
-
-ShaderFacts shader_facts(std::span<const std::uint32_t> words) {
-  ShaderFacts facts;
-  // By id: sets and bindings; values of constants; lengths of arrays, of what is pointed to, of variables.
-  std::map<std::uint32_t, std::uint32_t> sets, bindings, constants, lengths;
-  for (const Instruction i : split(words)) {
-    if (op_of(i) == kConstant && i.size() == 4) constants[i[2]] = i[3];
-    if (op_of(i) == kTypeArray && i.size() == 4) lengths[i[1]] = constants[i[3]];
-    if (op_of(i) == kTypePointer && i.size() == 4 && lengths.contains(i[3])) lengths[i[1]] = lengths[i[3]];
-    if (op_of(i) == kVariable && i.size() > 3 && lengths.contains(i[1])) lengths[i[2]] = lengths[i[1]];
-    if (op_of(i) != kDecorate || i.size() < 3) continue;
-    if (i[2] == kFlat) facts.flat_input = true;
-    if (i.size() == 4 && i[2] == kDescriptorSet) sets[i[1]] = i[3];
-    if (i.size() == 4 && i[2] == kBinding) bindings[i[1]] = i[3];
-  }
-  for (const auto& [id, binding] : bindings) {
-    const auto length = lengths.find(id);
-    std::uint32_t& count = facts.bindings[{sets[id], binding}];
-    count = std::max(count, length == lengths.end() ? 1 : length->second);
-  }
-  return facts;
 }
 
 }  // namespace quadrille::capture

@@ -30,6 +30,11 @@ Index place(std::vector<T>& table, const T& value) {
 
 }  // namespace
 
+bool may_attach(const ImageObject& image) {
+  const models::FormatInfo& info = models::format_info(image_format(image.format));
+  return image.type != VK_IMAGE_TYPE_3D && (info.may(models::kDepthUse) || info.may(models::kColorUse));
+}
+
 Index StreamTables::buffer(Handle handle) {
   if (device_.read_back.contains(handle)) throw user_error("buffer {} holds what a pass drew", handle);
   const BufferObject& object_of = object(device_.buffers, handle, "buffer");
@@ -56,8 +61,10 @@ Index StreamTables::attachment(Handle handle) {
   image.name = fmt::format("image {}", handle);
   image.format = image_format(from.format);
   const bool depth = models::format_info(image.format).may(models::kDepthUse);
-  if ((!depth && !models::format_info(image.format).may(models::kColorUse)) || from.type != VK_IMAGE_TYPE_2D)
-    throw user_error("an attachment of {} is not supported", format_name(from.format));
+  if (!may_attach(from))
+    throw user_error("an attachment of {}{} is not supported", format_name(from.format),
+                     from.type == VK_IMAGE_TYPE_3D ? ", a volume" : "");
+  image.kind = image_kind_of(from.type);
   image.width = from.width;
   image.height = from.height;
   image.levels = from.levels;
@@ -108,6 +115,8 @@ traces::TextureDescriptor StreamTables::texture(const ViewObject& view) {
   if (stored(view.image)) {
     made.image = attachment(view.image);
     made.layer = view.layer;
+    // A copy is drawn by sampling, which the program's image may not be for.
+    if (stream.images[made.image].samples == 1) stream.images[made.image].usage |= traces::kSampled;
     for (std::uint32_t level = 0; level < view.levels; ++level)
       for (std::uint32_t layer = 0; layer < made.layers; ++layer)
         note_needed({made.image, view.level + level, view.layer + layer});
@@ -170,7 +179,7 @@ Index StreamTables::own(OwnShader which, std::uint32_t location) {
 
 Index StreamTables::shader(Handle module, const ShaderWish& wish) {
   const auto key = std::tuple(module, wish.entry, wish.stage, wish.constants, wish.negative_one_to_one,
-                              wish.first_instance);
+                              wish.first_instance, wish.outputs);
   if (const auto found = shaders_.find(key); found != shaders_.end()) return found->second;
   traces::Shader made{fmt::format("shader {}", module), wish.stage,
                       shader_words(object(device_.modules, module, "shader module"), wish)};

@@ -18,6 +18,9 @@
 
 namespace quadrille::capture {
 
+/// May a pass draw to the image?
+[[nodiscard]] bool may_attach(const ImageObject& image);
+
 class StreamTables {
  public:
   explicit StreamTables(const Device& device) : device_(device) {}
@@ -88,7 +91,7 @@ class StreamTables {
            traces::Index>
       textures_;
   std::map<std::tuple<Handle, std::string, traces::ShaderStage, std::map<std::uint32_t, std::uint32_t>, bool,
-                      std::uint32_t>,
+                      std::uint32_t, std::map<std::uint32_t, std::uint32_t>>,
            traces::Index>
       shaders_;
   std::vector<ShaderFacts> facts_;  ///< by shader

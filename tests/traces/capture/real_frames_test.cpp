@@ -1,4 +1,4 @@
-/// Captured frames beside what lavapipe drew of them: that of a small program of this project's own, those
+/// Captured frames beside what lavapipe drew of them: those of small programs of this project's own, those
 /// of real programs, which are not part of the project; their tests pass by where the captures are not there.
 #include <catch2/catch.hpp>
 
@@ -56,6 +56,22 @@ TEST_CASE("capture: a frame of this project's own program is what lavapipe draws
   REQUIRE(image.width == theirs.width);
   REQUIRE(image.height == theirs.height);
   CHECK(pixels_apart(image.color, theirs) <= image.color.size() / 1000);
+}
+
+TEST_CASE("capture: a frame of a native Vulkan program is what lavapipe draws, on the exact machine too") {
+  const std::string path = QUADRILLE_SOURCE_DIR "/tests/traces/capture/own/native_frame";
+  const Import import = import_capture(path + ".gfxr");
+  CHECK(import.notes.empty());
+  // Of two passes two draws each, and a copy and a blit; the resolve is a pass without a draw.
+  CHECK(traces::stream_totals(import.stream).draws == 6);
+  CHECK(traces::stream_totals(import.stream).passes == 5);
+  const pipeline::FrameImage image =
+      pipeline::render_functional_frame(import.stream, models::Precision{}).image;
+  const scenes::Rgba8Image theirs = scenes::load_image(path + ".png");
+  REQUIRE(image.width == theirs.width);
+  REQUIRE(image.height == theirs.height);
+  CHECK(pixels_apart(image.color, theirs) <= image.color.size() / 1000);
+  CHECK(pipeline::render_exact(import.stream, pipeline::MachineConfig()).image.color == image.color);
 }
 
 TEST_CASE("capture: frames of a program that draws each on top of the last are what lavapipe draws of them") {

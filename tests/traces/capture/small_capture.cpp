@@ -49,13 +49,6 @@ std::vector<std::uint32_t> renamed(std::vector<std::uint32_t> words, const std::
   return words;
 }
 
-void add_shader(CaptureWriter& file, std::uint64_t handle, const char* source, traces::ShaderStage stage,
-                const char* entry) {
-  const auto words = renamed(scenes::compile_glsl(source, stage, "shader"), entry);
-  file.call("CreateShaderModule",
-            {{"pCreateInfo", {{"codeSize", words.size() * 4}, {"pCode", words}}}, {"pShaderModule", handle}});
-}
-
 void add_objects(CaptureWriter& file, const SmallCapture& wish) {
   const json size{{"width", 16}, {"height", 16}};
   file.call("CreateSwapchainKHR",
@@ -241,6 +234,13 @@ void add_commands(CaptureWriter& file, const SmallCapture& wish, const json& par
 
 }  // namespace
 
+void add_shader(CaptureWriter& file, std::uint64_t handle, const char* source, traces::ShaderStage stage,
+                const char* entry) {
+  const auto words = renamed(scenes::compile_glsl(source, stage, "shader"), entry);
+  file.call("CreateShaderModule",
+            {{"pCreateInfo", {{"codeSize", words.size() * 4}, {"pCode", words}}}, {"pShaderModule", handle}});
+}
+
 std::vector<std::byte> small_capture(const SmallCapture& wish) {
   CaptureWriter file(wish.packing);
   file.device_properties(wish.lavapipe);
@@ -248,6 +248,7 @@ std::vector<std::byte> small_capture(const SmallCapture& wish) {
   if (wish.arrays) add_arrays(file);
   else add_descriptors(file);
   add_pipeline(file, wish);
+  if (wish.objects) wish.objects(file);
   add_commands(file, wish);
   for (int frame = 1; frame < wish.frames; ++frame) {
     const std::array<float, 6> places{0, 0, 1, 0, 1, 1};

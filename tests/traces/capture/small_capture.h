@@ -5,10 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <functional>
 #include <utility>
 #include <vector>
 
 #include "tests/traces/capture/capture_writer.h"
+#include "traces/command_stream.h"
 
 namespace quadrille::capture {
 
@@ -59,7 +61,12 @@ struct SmallCapture {
   std::vector<std::pair<const char*, nlohmann::json>> behind{};
   /// commands before the pass, with their parameters
   std::vector<std::pair<const char*, nlohmann::json>> before{};
+  /// makes more objects, before the commands
+  std::function<void(CaptureWriter&)> objects{};
 };
+/// A module and a call that makes it, with entry point "main".
+void add_shader(CaptureWriter& file, std::uint64_t handle, const char* source, traces::ShaderStage stage,
+                const char* entry = "main");
 [[nodiscard]] std::vector<std::byte> small_capture(const SmallCapture& wish = {});
 inline constexpr std::uint8_t kTexel[4] = {200, 100, 50, 255};
 inline constexpr std::array<float, 3> kBlueOfBlocks{0, 0.25f, 1};
