@@ -165,6 +165,8 @@ class FrameRecorder {
   void fill(traces::Pipeline pipeline, const Fill& what, const AreaConstants& constants, const Area& area,
             const char* label);
   void attach(traces::AttachmentUse& use, const PassTarget& target);
+  /// An attachment is seen through a view: of another format it is not supported, and taken in its own.
+  void check_view_format(const ViewObject& view);
 
   void draw_one(const BoundState& bound, const DrawRange& range);
   /// Bytes that are arguments of draws. Throws `UserError` where they are not known.

@@ -109,7 +109,9 @@ void FrameRecorder::add_descriptor(traces::DescriptorSet& made, std::uint32_t nu
   } else if (combined || from.type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE) {
     if (from.view == 0)
       throw user_error("binding {} is an image that is left out", models::binding_text(number));
-    traces::TextureDescriptor texture = tables_.texture(object(device_.views, from.view, "image view"));
+    const ViewObject& view = object(device_.views, from.view, "image view");
+    if (tables_.stored(view.image)) check_view_format(view);
+    traces::TextureDescriptor texture = tables_.texture(view);
     texture.binding = number;
     if (combined) texture.sampler = tables_.sampler(from.sampler);
     made.textures.push_back(texture);

@@ -1,4 +1,5 @@
 /// Passes: attachments, what they begin with, and clears.
+#include <fmt/format.h>
 #include <vulkan/vulkan_core.h>
 
 #include <algorithm>
@@ -93,9 +94,18 @@ void FrameRecorder::begin_render_pass(const Value& info) {
   begin_pass_in(colors, target(pass.depth), info["renderArea"]);
 }
 
+void FrameRecorder::check_view_format(const ViewObject& view) {
+  const ImageObject& image = object(device_.images, view.image, "image");
+  const bool same = view.format == image.format || image_format(view.format) == image_format(image.format);
+  if (same || (view.aspect & VK_IMAGE_ASPECT_COLOR_BIT) == 0) return;
+  ++unsupported_[fmt::format("a view of {} of an attachment of {}", format_name(view.format),
+                             format_name(image.format))];
+}
+
 void FrameRecorder::attach(traces::AttachmentUse& use, const PassTarget& target) {
   const ViewObject& view = object(device_.views, target.view, "image view");
   use.image = tables_.attachment(view.image);
+  check_view_format(view);
   use.level = view.level;
   use.layer = view.layer;
   use.load = target.load;
