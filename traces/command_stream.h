@@ -85,8 +85,8 @@ inline constexpr std::uint8_t kAllUsages = kSampled | kColorAttachment | kDepthA
 /// An image. One that is never an attachment is a texture and brings its texels: all mip levels, finest
 /// first, in each level layer by layer or slice by slice, rows top to bottom, tightly packed; of compressed
 /// formats rows of blocks, of which those at the right and lower edges may reach beyond the level. Level i is
-/// max(1, width >> i) by max(1, height >> i), and so for a volume's depth. No attachment is a volume; it holds
-/// what passes store. One of one sample a pixel may begin with texels (attachment_texels.h); else with nothing.
+/// max(1, width >> i) by max(1, height >> i), and so for a volume's depth. No attachment is a volume; it
+/// holds what passes store. With one sample a pixel it may begin with texels (attachment_texels.h).
 struct Image {
   std::string name;
   Format format = Format::kR8G8B8A8Unorm;

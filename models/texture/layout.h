@@ -1,5 +1,5 @@
-/// Textures in device memory: mip chains in one of four orders (`Tiling`), which a machine chooses. An address
-/// is always a sum of a part of x and one of y.
+/// Textures in device memory: mip chains in one of four orders (`Tiling`), which a machine chooses. An
+/// address is always a sum of a part of x and one of y.
 ///
 /// Tiled, neighbours in both directions share cache lines and DRAM rows. Of 4 bytes a texel, a sector of 32
 /// bytes is 4x2 texels and a line of 128 bytes 8x4 texels (2x2 sectors); larger and smaller texels lie in the
@@ -10,10 +10,10 @@
 /// alternate, x first, in squares whose side is the shorter one of the level, rounded up to a power of two;
 /// squares lie along the longer side.
 ///
-/// In Williams' layout [P: Williams 1983, pyramidal parametrics] the components lie apart. A square of 2N x 2N
-/// bytes, row by row, has the red of the finest level of N x N at upper right, green at lower right and blue
-/// at lower left; at upper left lie those of the next level, and so on. A fourth component, which Williams did
-/// not have, lies behind the square, in the places of red. So a texel is four bytes of four lines. Only planes
+/// In Williams' layout [P: Williams 1983] the components lie apart. A square of 2N x 2N bytes, row by row,
+/// has the red of the finest level of N x N at upper right, green at lower right and blue at lower left; at
+/// upper left lie those of the next level, and so on. A fourth component, which Williams did not have, lies
+/// behind the square, in the places of red. So a texel is four bytes of four lines. Only planes
 /// of four components of 8 bits whose sides differ by at most a factor of two lie so; others are tiled.
 ///
 /// An attachment that is sampled lies as it was drawn, in tiles of 8x8 pixels that are quad-major

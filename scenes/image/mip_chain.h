@@ -19,8 +19,8 @@ namespace quadrille::scenes {
 /// What texels of eight bits stand for.
 struct TexelCoding {
   bool srgb = false;  ///< r, g and b are decoded before and encoded after filtering; alpha is linear always
-  /// The chain's r, g and b are multiplied by alpha, in linear light: what is transparent has no colour that a
-  /// filter could bring in. The image's own are not.
+  /// The chain's r, g and b are multiplied by alpha, in linear light: what is transparent has no colour that
+  /// a filter could bring in. The image's own are not.
   bool premultiplied = false;
 };
 /// All levels of `image`, finest first, tightly packed RGBA8.

@@ -68,8 +68,8 @@ bool is_srgb(std::size_t slot) {
          role == TextureSlot::kSpecularColor || role == TextureSlot::kSheenColor;
 }
 
-/// A texture with the levels of its file. Blocks stay blocks, but where they hold signed numbers or halves, or
-/// have no format with sRGB where that is due.
+/// A texture with the levels of its file. Blocks stay blocks, but where they hold signed numbers or halves,
+/// or have no format with sRGB where that is due.
 traces::Image file_image(const SceneImage& source, bool srgb) {
   const TextureFile& file = *source.file();
   const std::optional<traces::Format> blocks =

@@ -239,9 +239,9 @@ TEST_CASE("a trace command wants a trace, and a trace takes no view") {
 }
 
 TEST_CASE("details that are none, or that nothing would show, are refused") {
-  render_refused({"--detail", "draw"}, {"--detail: draw not in {draws,tiles,timeline,path,misses}"});
+  render_refused({"--detail", "draw"}, {"--detail: draw not in {draws,tiles,timeline,path,misses,textures}"});
   render_refused({"--detail", "draws,"},
-                 {"--detail: an empty word not in {draws,tiles,timeline,path,misses}"});
+                 {"--detail: an empty word not in {draws,tiles,timeline,path,misses,textures}"});
   render_refused({"--detail", "tiles"}, {"--detail: tiles are in the JSON alone; add --stats"});
   render_refused({"--detail", "draws", "--frames", "2"},
                  {"--detail: with --frames each frame is one row; add --stats"});
