@@ -187,16 +187,17 @@ Result texture_cache(const Setting& setting) {
       "twice. Squares win only in between, and only if the texture lies along the screen: on `builtin:quad` "
       "it "
       "lies across, and an exact LRU cache of the same look-ups confirms the order.",
+      "The first level's rate counts a warp's distinct lines, of which each is looked up once for 32 "
+      "fragments: "
+      "it is lower than a rate by texels, which the third column is near to."};
+  result.remarks.emplace_back(
       "Layouts: a line of tiles or of Morton order has 8x4 texels, one of rows 32x1, one of Williams' "
       "pyramid 128 "
       "bytes of one component, so a texel there is four look-ups. Where textures lie along the screen's rows "
       "and "
       "the cache holds a row of tiles, rows of texels do as well as tiles. Levels that are narrower than a "
       "tile "
-      "of 32 texels leave lines of it empty and few sets for the others; Morton order has no such holes.",
-      "The first level's rate counts a warp's distinct lines, of which each is looked up once for 32 "
-      "fragments: "
-      "it is lower than a rate by texels, which the third column is near to."};
+      "of 32 texels leave lines of it empty and few sets for the others; Morton order has no such holes.");
   result.plot = kPlotHead + data + "EOD\nplot " + curves;
   return result;
 }

@@ -52,7 +52,7 @@ struct Plane {
   }
   [[nodiscard]] double shade(double x, double y) const {
     const auto [u, v] = at(x, y);
-    const auto square = [](double c) { return static_cast<std::int64_t>(std::floor(c * (kSide / kSquare))); };
+    const auto square = [](double c) { return static_cast<std::int64_t>(std::floor(c * kSide / kSquare)); };
     return (square(u) + square(v)) % 2 == 0 ? 1 : 0;
   }
 };

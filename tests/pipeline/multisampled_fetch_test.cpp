@@ -157,7 +157,7 @@ TEST_CASE("multisampled fetch: what no pass has stored, or another kind of view,
   const auto damaged = [](const auto& damage) {
     traces::CommandStream stream = multisampled_fetch_stream(1);
     damage(stream);
-    const std::string said = refusal(stream);
+    std::string said = refusal(stream);
     CHECK(said.find('\n') == std::string::npos);
     return said;
   };

@@ -1,7 +1,14 @@
 /// Textures of glTF whose images are KTX2 or DDS files with their own levels.
 #include <catch2/catch.hpp>
 
+#include <memory>
+#include <tuple>
+#include <utility>
+
+#include "models/texture/block/block_format.h"
+#include "scenes/builtin/mesh_builder.h"
 #include "scenes/image/texture_file.h"
+#include "scenes/record/recorder.h"
 #include "scenes/scene.h"
 #include "tests/scenes/gltf_text.h"
 #include "tests/scenes/texture_files.h"
@@ -13,17 +20,34 @@ using models::BlockCode;
 namespace {
 
 /// What a glTF file that names this texture's file by `texture` records: its images that bring texels.
-std::vector<traces::Image> recorded(const FileBytes& file, const std::string& texture,
-                                    const std::string& role = "emissiveTexture") {
-  const TempGltf gltf(triangle_gltf(R"(,"material":0)", R"(,"materials":[{"emissiveFactor":[1,1,1],")" +
-                                                            role + R"(":{"index":0}}],"textures":[{)" +
-                                                            texture + R"(}],"images":[{"uri":")" +
-                                                            data_uri(file) + R"("}])"));
+std::vector<traces::Image> recorded(const FileBytes& file, const std::string& texture) {
+  const TempGltf gltf(triangle_gltf(
+      R"(,"material":0)", R"(,"materials":[{"emissiveTexture":{"index":0}}],"textures":[{)" + texture +
+                              R"(}],"images":[{"uri":")" + data_uri(file) + R"("}])"));
   SceneOptions options;
   options.width = options.height = 16;
   options.leave_out = false;
   std::vector<traces::Image> textures;
   for (const traces::Image& image : load_scene(gltf.path(), options).images)
+    if (!image.is_attachment()) textures.push_back(image);
+  return textures;
+}
+
+/// What a card with this texture in this slot of its material records: its images that bring texels.
+std::vector<traces::Image> recorded_in(TextureSlot slot, TextureFile file) {
+  SceneData scene;
+  scene.images.emplace_back("t", std::make_shared<const TextureFile>(std::move(file)));
+  Material m;
+  m.emissive = glm::vec3(1);
+  m.texture(slot).image = 0;
+  scene.materials.push_back(m);
+  MeshBuilder mesh;
+  mesh.box(glm::vec3(-1), glm::vec3(1), 1);
+  place(scene, mesh.finish(scene, "card", 0, {}));
+  SceneOptions options;
+  options.width = options.height = 16;
+  std::vector<traces::Image> textures;
+  for (const traces::Image& image : Recorder(scene, options).record().images)
     if (!image.is_attachment()) textures.push_back(image);
   return textures;
 }
@@ -42,28 +66,28 @@ TEST_CASE("gltf: textures have the levels of their KTX2 or DDS file") {
     CHECK(textures[0].width == 20);
     CHECK(textures[0].height == 12);
     CHECK(textures[0].levels == 5);
-    CHECK(textures[0].format == traces::Format::kBc1RgbaSrgb);
+    CHECK(textures[0].format == traces::Format::kBc1RgbaUnorm);  // no shader reads it
     CHECK(textures[0].texels == blocks);
   }
 }
 
 TEST_CASE("gltf: blocks of a KTX2 file stay blocks where the machine has their format") {
   using traces::Format;
-  for (const auto& [number, code, role, format] :
-       {std::tuple{145u, BlockCode::kBc7, "emissiveTexture", Format::kBc7Srgb},
-        {145u, BlockCode::kBc7, "occlusionTexture", Format::kBc7Unorm},
-        {141u, BlockCode::kBc5Unorm, "normalTexture", Format::kBc5Unorm},
-        {166u, BlockCode::kAstc6x6Srgb, "emissiveTexture", Format::kAstc6x6Srgb},
-        {166u, BlockCode::kAstc6x6Srgb, "occlusionTexture", Format::kAstc6x6Unorm},
-        {149u, BlockCode::kEtc2Rgb8A1, "emissiveTexture", Format::kEtc2Rgb8A1Srgb},
+  for (const auto& [number, code, slot, format] :
+       {std::tuple{145u, BlockCode::kBc7, TextureSlot::kEmissive, Format::kBc7Srgb},
+        {145u, BlockCode::kBc7, TextureSlot::kOcclusion, Format::kBc7Unorm},
+        {141u, BlockCode::kBc5Unorm, TextureSlot::kNormal, Format::kBc5Unorm},
+        {166u, BlockCode::kAstc6x6Srgb, TextureSlot::kEmissive, Format::kAstc6x6Srgb},
+        {166u, BlockCode::kAstc6x6Srgb, TextureSlot::kOcclusion, Format::kAstc6x6Unorm},
+        {149u, BlockCode::kEtc2Rgb8A1, TextureSlot::kEmissive, Format::kEtc2Rgb8A1Srgb},
         // No format with sRGB; numbers with a sign, which glTF's textures do not have; halves.
-        {139u, BlockCode::kBc4Unorm, "emissiveTexture", Format::kR8G8B8A8Srgb},
-        {142u, BlockCode::kBc5Snorm, "normalTexture", Format::kR8G8B8A8Unorm},
-        {143u, BlockCode::kBc6hUfloat, "emissiveTexture", Format::kR8G8B8A8Srgb}}) {
-    INFO(models::block_code_info(code).name << " " << role);
+        {139u, BlockCode::kBc4Unorm, TextureSlot::kEmissive, Format::kR8G8B8A8Srgb},
+        {142u, BlockCode::kBc5Snorm, TextureSlot::kNormal, Format::kR8G8B8A8Unorm},
+        {143u, BlockCode::kBc6hUfloat, TextureSlot::kEmissive, Format::kR8G8B8A8Srgb}}) {
+    INFO(models::block_code_info(code).name << " in slot " << static_cast<int>(slot));
     const FileBytes blocks = levels_of(code, 20, 12, 5);
     const std::vector<traces::Image> textures =
-        recorded(ktx2({.vk_format = number}, code, blocks), R"("source":0)", role);
+        recorded_in(slot, read_texture_file(ktx2({.vk_format = number}, code, blocks), "t.ktx2"));
     REQUIRE(textures.size() == 1);
     CHECK(textures[0].format == format);
     const bool stays = models::is_block_format(format);
