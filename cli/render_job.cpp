@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 
 #include "cli/command.h"
+#include "cli/detail_words.h"
 #include "cli/film.h"
 #include "cli/image_files.h"
 #include "cli/process.h"
@@ -29,19 +29,6 @@ namespace {
 constexpr std::int64_t kMaxCycles = 1'000'000'000'000;
 constexpr double kMostFaster = 100;
 constexpr std::int64_t kMaxWindow = 1'000'000;  // cycles: far beyond what any frame gains by
-
-/// The words of --detail.
-struct DetailWord {
-  std::string_view word;
-  bool pipeline::DetailOptions::*kept;
-};
-constexpr std::array<DetailWord, 6> kDetailWords{{{"draws", &pipeline::DetailOptions::draws},
-                                                  {"tiles", &pipeline::DetailOptions::tiles},
-                                                  {"timeline", &pipeline::DetailOptions::timeline},
-                                                  {"path", &pipeline::DetailOptions::path},
-                                                  {"misses", &pipeline::DetailOptions::misses},
-                                                  {"textures", &pipeline::DetailOptions::textures}}};
-constexpr const char* kDetailNames = "draws,tiles,timeline,path,misses,textures";
 
 void note_host(pipeline::Figures& figures, double load_s) {
   figures.host.load_s = load_s;
@@ -204,15 +191,7 @@ pipeline::DetailOptions RenderJob::details() const {
                                  .misses = page,
                                  .textures = page};
   if (!detail) return chosen;
-  for (std::size_t at = 0; at <= detail->size();) {
-    const std::size_t end = std::min(detail->find(',', at), detail->size());
-    const std::string word = detail->substr(at, end - at);
-    const auto found = std::ranges::find(kDetailWords, word, &DetailWord::word);
-    if (found == kDetailWords.end())
-      throw user_error("--detail: {} not in {{{}}}", word.empty() ? "an empty word" : word, kDetailNames);
-    chosen.*found->kept = true;
-    at = end + 1;
-  }
+  choose_details(*detail, chosen);
   if ((chosen.tiles || (chosen.timeline && !timeline)) && !stats && !csv && !report)
     throw user_error("--detail: {} in the JSON alone; add --stats F.json",
                      chosen.tiles ? "tiles are" : "the timeline is");
